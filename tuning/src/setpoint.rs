@@ -1,6 +1,6 @@
 //! What a closed loop is told to do.
 
-/// A speed or a place.
+/// A speed or a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Setpoint {
     /// Speed, counts/s.

@@ -60,7 +60,7 @@ pub struct FrictionParams {
 pub struct GearParams {
     /// Motor turns for one turn of the output, above zero; 1 for direct drive.
     pub ratio: f64,
-    /// Whole play between the teeth, measured at the output shaft.
+    /// Whole backlash between the teeth, measured at the output shaft.
     pub backlash_radians: f64,
 }
 
@@ -411,19 +411,19 @@ impl Datasheet {
 }
 
 impl CouplingParams {
-    /// The spring and damper that give an axis a free resonance of `hertz` (motor and load swinging against each other) with
+    /// The spring and damper that give an axis a free resonance of `hertz` (motor and load oscillating against each other) with
     /// `damping_ratio` of critical damping.
     pub fn with_resonance(params: &AxisParams, hertz: f64, damping_ratio: f64) -> Self {
         let omega = std::f64::consts::TAU * hertz;
-        let swinging = swinging_inertia(params);
+        let oscillating = swinging_inertia(params);
         Self {
-            stiffness_newton_metres_per_radian: omega * omega * swinging,
-            damping_newton_metre_seconds_per_radian: 2.0 * damping_ratio * omega * swinging,
+            stiffness_newton_metres_per_radian: omega * omega * oscillating,
+            damping_newton_metre_seconds_per_radian: 2.0 * damping_ratio * omega * oscillating,
         }
     }
 }
 
-/// Inertia of motor and load swinging against each other, at the output shaft.
+/// Inertia of motor and load oscillating against each other, at the output shaft.
 fn swinging_inertia(params: &AxisParams) -> f64 {
     let motor = params.motor.rotor_inertia_kilogram_square_metres * params.gear.ratio * params.gear.ratio;
     let load = params.load.inertia_kilogram_square_metres;

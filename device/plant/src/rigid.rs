@@ -1,4 +1,4 @@
-//! An axis whose load follows the motor without play: one inertia.
+//! An axis whose load follows the motor without backlash: one inertia.
 
 use super::friction::{DryFriction, slide_one};
 use super::linear::{dot, exponential};

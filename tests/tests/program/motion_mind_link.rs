@@ -506,7 +506,7 @@ fn a_loop_that_shakes_its_motor_is_switched_off_by_stop_until_the_motor_stands()
         let mut link = connected(Mode::SerialPid, protocol);
         tame(&link);
         assert!(link.arm(ArmScope::Velocity));
-        // So much gain that the loop swings for ever.
+        // So much gain that the loop oscillates for ever.
         job(&mut link, |wire| {
             wire.transact(0x18, &[PTERM.into(), 60_000]).map_err(|error| error.failure("write", "it"))?;
             wire.transact(0x18, &[DTERM.into(), 0]).map_err(|error| error.failure("write", "it"))?;
@@ -618,7 +618,7 @@ fn warnings(link: &Link) -> Vec<String> {
 fn arming_switches_a_loop_on_only_where_it_holds_the_motor_still() {
     for protocol in Protocol::ALL {
         let mut link = connected(Mode::SerialPid, protocol);
-        // It is told to be elsewhere while it is off; and its gains swing for ever once it moves.
+        // It is told to be elsewhere while it is off; and its gains make it oscillate for ever once it moves.
         job(&mut link, |wire| {
             let word = i64::from(function::DISABLEPID);
             for (register, value) in [(FUNCTION, word), (PTERM, 60_000), (DTERM, 0), (PIDSCALAR, 4)] {

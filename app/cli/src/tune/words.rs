@@ -64,7 +64,7 @@ pub fn print(report: &Report, out: &mut Output) -> Result<(), OutputError> {
         } else {
             "none seen".into()
         };
-        row("play at reversals", value, format!("+- {:.1} counts", slack.interval_counts));
+        row("backlash at reversals", value, format!("+- {:.1} counts", slack.interval_counts));
     }
     if let Some(lag) = &report.lag {
         let range = format!("{:.1} to {:.1} ms", 1e3 * lag.interval_s.0, 1e3 * lag.interval_s.1);

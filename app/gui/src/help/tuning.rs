@@ -16,7 +16,7 @@ const HOW: [(&str, &str); 7] = [
     ),
     (
         "Experiment",
-        "On an axis that turns freely: full speed one way, a few steps up and down, full speed the other way. Within a travel: swings \
+        "On an axis that turns freely: full speed one way, a few steps up and down, full speed the other way. Within a travel: oscillations \
          about the place where the axis stands, never at full speed. The counts with their times are fitted by a model of a motor with \
          friction, which gives QPPS, the time constant and how sure they are.",
     ),
@@ -28,7 +28,7 @@ const HOW: [(&str, &str); 7] = [
     (
         "Design",
         "Gains are searched on the model so that a step and a load are answered quickly, while the maximum sensitivity Ms stays below \
-         what the level allows: 1.2 at level 0, 1.6 at 50, 2.0 at 100. Less is tamer and forgives more load, more play and a warmer motor; \
+         what the level allows: 1.2 at level 0, 1.6 at 50, 2.0 at 100. Less is tamer and forgives more load, more backlash and a warmer motor; \
          more is quicker.",
     ),
     (
@@ -49,7 +49,7 @@ const FIGURES: [(&str, &str); 5] = [
     ("Load dip", "How far a load of 15 % of the stall torque drives the motor off, as a share of the step."),
     (
         "Ms",
-        "The peak of the sensitivity. In the Nyquist plot the curve keeps out of a circle of radius 1/Ms about -1. Above 2 the loop is close to swinging.",
+        "The peak of the sensitivity. In the Nyquist plot the curve keeps out of a circle of radius 1/Ms about -1. Above 2 the loop is close to oscillating.",
     ),
     (
         "Duty noise",
@@ -76,7 +76,7 @@ const REFUSED: [(&str, &str); 9] = [
     ),
     (
         "Does not fit",
-        "The motion is not that of a motor with friction: slipping parts, play, a load that changes.",
+        "The motion is not that of a motor with friction: slipping parts, backlash, a load that changes.",
     ),
     ("Link or controller", "No answer, a fault, a command that is not taken."),
 ];

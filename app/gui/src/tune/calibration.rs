@@ -94,18 +94,18 @@ pub const VELOCITY_STEPS: [Step; 5] = [
     },
     Step {
         title: "I",
-        text: "Raise I in steps of 0.1 until the speed is exact. Too much of it makes the motor rough: it swings about the setpoint.",
+        text: "Raise I in steps of 0.1 until the speed is exact. Too much of it makes the motor rough: it oscillates about the setpoint.",
         changes: &[
             change!("I up 0.1", "Makes good what P leaves, sooner", "velocity.i": |i| i + 0.1),
             change!("I up 0.02", "A small step, for quick motors", "velocity.i": |i| i + 0.02),
-            change!("I down 0.1", "Less of it, against swings", "velocity.i": |i| i - 0.1),
-            change!("I to two thirds", "Less of it, against swings", "velocity.i": |i| i * 2.0 / 3.0),
+            change!("I down 0.1", "Less of it, against oscillation", "velocity.i": |i| i - 0.1),
+            change!("I to two thirds", "Less of it, against oscillation", "velocity.i": |i| i * 2.0 / 3.0),
         ],
     },
     Step {
         title: "D",
         text: "D usually stays 0. Only if P and I cannot be made strong enough without overshoot, a little D damps them; it also makes \
-               noise, which can swing by itself.",
+               noise, which can oscillate by itself.",
         changes: &[
             change!("D up 0.1", "Damps overshoot, adds noise", "velocity.d": |d| d + 0.1),
             change!("D to 0", "As the procedure leaves it", "velocity.d": |_value| 0.0),
@@ -157,8 +157,8 @@ pub const POSITION_STEPS: [Step; 5] = [
     },
     Step {
         title: "I and deadzone",
-        text: "I brings the axis to the exact place. With play in the gears it makes it hunt about that place instead: widen the \
-               deadzone, within which the place counts as reached, or lower I.",
+        text: "I brings the axis to the exact position. With backlash in the gears it makes it hunt about that position instead: widen the \
+               deadzone, within which the position counts as reached, or lower I.",
         changes: &[
             change!("I up", "A quarter more, from 0.05 on", "position.i": |i| (i * 1.25).max(i + 0.05)),
             change!("I to two thirds", "Less of it, against hunting", "position.i": |i| i * 2.0 / 3.0),
@@ -168,7 +168,7 @@ pub const POSITION_STEPS: [Step; 5] = [
     },
     Step {
         title: "Max I",
-        text: "I works only within Max I. Raise it until I carries what friction and load take; too much lets the axis swing.",
+        text: "I works only within Max I. Raise it until I carries what friction and load take; too much lets the axis oscillate.",
         changes: &[
             change!("Max I up", "Half as much again, from 10 on", "position.max_i": |most| (most * 1.5).max(most + 10.0)),
             change!("Max I down", "A third less", "position.max_i": |most| most / 1.5),
@@ -286,9 +286,9 @@ fn advise(which: Loop, step: usize, seen: &Observation) -> Advice {
 }
 
 fn advise_velocity(step: usize, seen: &Observation) -> Advice {
-    let (below, percent) = (100.0 * seen.error, 100.0 * seen.swing / seen.setpoint.abs().max(1.0));
+    let (below, percent) = (100.0 * seen.error, 100.0 * seen.amplitude / seen.setpoint.abs().max(1.0));
     let vibration =
-        format!("It vibrates: ± {percent:.0} % of the speed, ± {:.0} % duty.", seen.duty_swing_percent);
+        format!("It vibrates: ± {percent:.0} % of the speed, ± {:.0} % duty.", seen.duty_amplitude_percent);
     match (step, seen.vibrates) {
         (1 | 2, true) => Advice::Change(format!("{vibration} Take P to two thirds.")),
         (3, true) => Advice::Change(format!("{vibration} Take I back.")),
@@ -313,7 +313,7 @@ fn advise_velocity(step: usize, seen: &Observation) -> Advice {
 }
 
 fn advise_position(step: usize, seen: &Observation) -> Advice {
-    let hunting = format!("It hunts about the place: ± {:.0} counts.", seen.swing);
+    let hunting = format!("It hunts about the setpoint: ± {:.0} counts.", seen.amplitude);
     let over = seen.overshoot.unwrap_or(0.0);
     let overshot = format!("The last move overshot by {:.0} %.", 100.0 * over);
     match (step, seen.vibrates) {
@@ -328,17 +328,19 @@ fn advise_position(step: usize, seen: &Observation) -> Advice {
             Advice::Change(format!("{overshot} Raise D until it does not."))
         }
         (2, false) if seen.error.abs() > 3.0 => Advice::Change(format!(
-            "No overshoot, and {:.0} counts from the place. Raise P.",
+            "No overshoot, and {:.0} counts from the setpoint. Raise P.",
             seen.error.abs()
         )),
-        (2, false) => {
-            Advice::Good("No overshoot, and at the place. Raise P and D for more speed, or go on.".to_owned())
-        }
+        (2, false) => Advice::Good(
+            "No overshoot, and at the setpoint. Raise P and D for more speed, or go on.".to_owned(),
+        ),
         (_, false) if seen.error.abs() > 1.5 => Advice::Change(format!(
-            "{:.0} counts from the place. Raise I, and Max I if that does nothing.",
+            "{:.0} counts from the setpoint. Raise I, and Max I if that does nothing.",
             seen.error.abs()
         )),
-        (_, false) => Advice::Good("At the place and quiet. You are done; save it when you like.".to_owned()),
+        (_, false) => {
+            Advice::Good("At the setpoint and quiet. You are done; save it when you like.".to_owned())
+        }
     }
 }
 
@@ -403,7 +405,7 @@ mod tests {
     fn advice_follows_the_procedure() {
         let seen = Observation { setpoint: 1000.0, error: 0.3, ..Observation::default() };
         assert!(matches!(advise(Loop::Velocity, 2, &seen), Advice::Change(text) if text.contains("Raise P")));
-        let shakes = Observation { vibrates: true, swing: 100.0, ..seen };
+        let shakes = Observation { vibrates: true, amplitude: 100.0, ..seen };
         assert!(
             matches!(advise(Loop::Velocity, 2, &shakes), Advice::Change(text) if text.contains("two thirds"))
         );

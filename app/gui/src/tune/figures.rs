@@ -25,7 +25,7 @@ pub const FIGURES: [Figure; 5] = [
     ("Load dip", "How far a load of 15 % of the stall torque drives it off, over the step", |shown| {
         if_stable(shown, || format!("{:.1} %", 100.0 * shown.forecast.load_dip))
     }),
-    ("Ms", "Maximum sensitivity: 1.2 is very tame, 1.6 is firm, above 2 is close to swinging", |shown| {
+    ("Ms", "Maximum sensitivity: 1.2 is very tame, 1.6 is firm, above 2 is close to oscillating", |shown| {
         if_stable(shown, || format!("{:.2}", shown.forecast.ms))
     }),
     ("Duty noise", "What the rounding of counts alone does to the duty", |shown| {

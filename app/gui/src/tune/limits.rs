@@ -46,7 +46,7 @@ fn limited(limit: &Limit, level: f64) -> String {
         Bound::Lag => "the lag of the loop: Ms with the largest lag that is likely",
         Bound::LightLoad => "a lighter load: Ms at half the inertia",
         Bound::DutyNoise => "the duty noise, which the rounding of counts makes",
-        Bound::Backlash => "the play of the mechanics: a quicker integral would make it hunt",
+        Bound::Backlash => "the backlash of the mechanics: a quicker integral would make it hunt",
     };
     match limit.by {
         Bound::Backlash => format!("{verb} {what}."),

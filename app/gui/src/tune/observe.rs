@@ -12,16 +12,16 @@ use super::which::Loop;
 
 /// How far back it looks, s.
 const MEMORY_S: f64 = 12.0;
-/// The part at the end of a constant setpoint that counts as steady, s: of a speed, and of a place, about which it hunts slowly. The
+/// The part at the end of a constant setpoint that counts as steady, s: of a speed, and of a position, about which it hunts slowly. The
 /// fewest samples in it.
 const STEADY_S: [f64; 2] = [1.5, 3.0];
 const FEWEST: usize = 8;
 /// How long a motor is given to come to its setpoint, s.
 const SETTLING_S: f64 = 1.0;
-/// Swings beyond these, with enough turning points, are a vibration: of the speed over the setpoint, of the duty, %.
-const SPEED_SWING: f64 = 0.04;
-const DUTY_SWING_PERCENT: f64 = 6.0;
-/// A swing of a speed or of a place that turns less often in a second than this is a drift.
+/// Oscillations beyond these, with enough turning points, are a vibration: of the speed over the setpoint, of the duty, %.
+const SPEED_OSCILLATION: f64 = 0.04;
+const DUTY_OSCILLATION_PERCENT: f64 = 6.0;
+/// An oscillation of a speed or of a position that turns less often in a second than this is a drift.
 const FEWEST_TURNS_PER_S: [f64; 2] = [1.6, 0.9];
 /// Duty that is full, %.
 const FULL_PERCENT: f64 = 97.0;
@@ -48,10 +48,10 @@ pub struct Observation {
     pub setpoint: f64,
     /// Mean distance below the setpoint, over it; for positions in counts.
     pub error: f64,
-    /// Half of the span of the swings of speed or position, in its unit.
-    pub swing: f64,
+    /// Half the peak-to-peak oscillation of speed or position, in its unit.
+    pub amplitude: f64,
     /// The same of the duty, %.
-    pub duty_swing_percent: f64,
+    pub duty_amplitude_percent: f64,
     /// How often the value turned, 1/s.
     pub turns_per_s: f64,
     pub vibrates: bool,
@@ -112,15 +112,15 @@ impl Observer {
         if steady.len() < FEWEST || !is_asked {
             return None;
         }
-        let (mean, swing, turns) = swings(steady.iter().map(|r| r.value));
-        let (duty, duty_swing_percent, duty_turns) = swings(steady.iter().map(|r| r.duty_percent));
+        let (mean, amplitude, turns) = oscillation(steady.iter().map(|r| r.value));
+        let (duty, duty_amplitude_percent, duty_turns) = oscillation(steady.iter().map(|r| r.duty_percent));
         let seconds = last.t - steady[0].t;
         let turns_per_s = turns.max(duty_turns) as f64 / seconds.max(0.1);
         let mut seen = Observation {
             setpoint: last.setpoint,
             error: last.setpoint - mean,
-            swing,
-            duty_swing_percent,
+            amplitude,
+            duty_amplitude_percent,
             turns_per_s,
             overshoot: self.overshoot(which),
             way: self.last_way(which).map(|(_, _, way)| way),
@@ -130,14 +130,14 @@ impl Observer {
         match which {
             Loop::Velocity => {
                 seen.error /= last.setpoint;
-                let shakes =
-                    swing > SPEED_SWING * last.setpoint.abs() || duty_swing_percent > DUTY_SWING_PERCENT;
+                let shakes = amplitude > SPEED_OSCILLATION * last.setpoint.abs()
+                    || duty_amplitude_percent > DUTY_OSCILLATION_PERCENT;
                 seen.vibrates = shakes && turns_enough;
                 let wrong_way = mean * last.setpoint < 0.0 || mean.abs() > 1.6 * last.setpoint.abs();
                 seen.runs_away = duty.abs() > FULL_PERCENT && wrong_way;
             }
             Loop::Position => {
-                let shakes = swing > ROUNDING_COUNTS || duty_swing_percent > DUTY_SWING_PERCENT;
+                let shakes = amplitude > ROUNDING_COUNTS || duty_amplitude_percent > DUTY_OSCILLATION_PERCENT;
                 seen.vibrates = shakes && turns_enough;
                 let first = steady[0].value;
                 let away =
@@ -171,7 +171,7 @@ impl Observer {
 }
 
 /// Mean, half of the span, and turning points.
-fn swings(values: impl Iterator<Item = f64>) -> (f64, f64, usize) {
+fn oscillation(values: impl Iterator<Item = f64>) -> (f64, f64, usize) {
     let values: Vec<f64> = values.collect();
     let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
     let (low, high) =

@@ -114,7 +114,7 @@ fn steps(cause: Cause) -> &'static [&'static str] {
         ],
         Cause::NotVerified => &[
             "Lower the level and try again.",
-            "Look for play in gears and for soft couplings: they swing with stiff gains.",
+            "Look for backlash in gears and for soft couplings: they oscillate with stiff gains.",
         ],
         Cause::Refused => &[
             "See the traffic panel (Ctrl+T) for the command that was refused.",

@@ -137,9 +137,9 @@ fn model_text(report: &Report) -> Option<String> {
     }
     if let Some(slack) = report.backlash {
         text += &if slack.counts > 0.0 {
-            format!(", play of at least {:.1} ± {:.1} counts", slack.counts, slack.interval_counts)
+            format!(", backlash of at least {:.1} ± {:.1} counts", slack.counts, slack.interval_counts)
         } else {
-            ", no play seen".to_owned()
+            ", no backlash seen".to_owned()
         };
     }
     Some(text)
@@ -322,13 +322,13 @@ fn figures_ui(ui: &mut Ui, model: &Model, which: Loop) {
         indicator_ui(
             ui,
             IndicatorState::Error,
-            "Unstable on the model: the motor would swing up. Lower the gains.",
+            "Unstable on the model: the motor would oscillate ever more. Lower the gains.",
         );
     } else if shown.forecast.ms > 2.0 {
         indicator_ui(
             ui,
             IndicatorState::Warning,
-            "Ms above 2: a little more load or lag could make it swing.",
+            "Ms above 2: a little more load or lag could make it oscillate.",
         );
     }
     super::limits::limits_ui(ui, run);

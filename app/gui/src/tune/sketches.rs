@@ -139,7 +139,7 @@ impl Sketch {
             }
             Cause::Refused => unit("?", "The controller did not take a command"),
             Cause::UnknownLaw => unit("?", "The controller's loop follows no law that is known"),
-            Cause::NotVerified => unit("~", "The loop swings more than the model predicts"),
+            Cause::NotVerified => unit("~", "The loop oscillates more than the model predicts"),
             _ => return None,
         })
     }

@@ -520,7 +520,7 @@ fn calibration_by_hand_makes_the_changes_of_the_manual_and_says_what_the_motor_d
     assert!(bench.sees_part("It turns and the loop has it."));
     bench.press("3. P");
     assert!(bench.sees_part("Go on to I.") || bench.sees_part("Raise P."));
-    // Far too much P: the loop swings, and the assistant sees it.
+    // Far too much P: the loop oscillates, and the assistant sees it.
     for _ in 0..16 {
         bench.press("P up 25 %");
         bench.pass_ms(900);

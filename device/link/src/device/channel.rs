@@ -14,7 +14,7 @@ pub enum Role {
     Pwm,
     /// A motor's speed, counts/s.
     Velocity,
-    /// A place, counts.
+    /// A position, counts.
     Position,
     /// A motor's current, A.
     Current,

@@ -49,7 +49,7 @@ pub fn cannot_tune(identity: Option<&Identity>, known: Known<'_>) -> Option<&'st
     let mode = identity.and_then(MotionMindFacts::of).map(|facts| facts.mode.number());
     if mode.is_some_and(|mode| mode != MotionMindSetup::SERIAL_PID) {
         return Some(
-            "Guided tuning needs mode 4, serial PID with an encoder: no other mode takes both a duty and a place. Switch the power off, \
+            "Guided tuning needs mode 4, serial PID with an encoder: no other mode takes both a duty and a position. Switch the power off, \
              set SW1 to mode 4 (MODE2 off, MODE1 on, MODE0 on), and switch it on again. The step response assistant works here too.",
         );
     }

@@ -84,7 +84,7 @@ pub const STAGES: [Stage; 5] = [
     Stage {
         title: "I",
         text: "Go on stepping while ITERM goes up: the motor should be nudged into the last counts. Too much makes it \
-               swing: lower ITERM, raise PTERM, or set SATPROT.",
+               oscillate: lower ITERM, raise PTERM, or set SATPROT.",
         changes: &[I_UP, I_DOWN, P_UP, I_OFF],
     },
     Stage {
@@ -165,8 +165,8 @@ struct Recording {
 pub struct Outcome {
     pub step_counts: f64,
     pub figures: StepFigures,
-    /// Turns of direction about the target: a motor that swings.
-    pub swings: usize,
+    /// Turns of direction about the target: a motor that oscillates.
+    pub reversals: usize,
 }
 
 impl StepAssistant {
@@ -227,10 +227,10 @@ impl StepAssistant {
         let Some(last) = self.last else { return "Make a step: its figures stand here afterwards." };
         let share = (last.figures.final_error / last.step_counts).abs();
         match self.stage {
-            _ if last.swings > 4 && self.stage >= 2 => {
-                "It swings. Lower ITERM, raise PTERM, or set SATPROT on the Registers screen."
+            _ if last.reversals > 4 && self.stage >= 2 => {
+                "It oscillates. Lower ITERM, raise PTERM, or set SATPROT on the Registers screen."
             }
-            _ if last.swings > 4 => "It swings. Lower PTERM, or raise PIDSCALAR by one.",
+            _ if last.reversals > 4 => "It oscillates. Lower PTERM, or raise PIDSCALAR by one.",
             0 | 1 if share > 0.5 => {
                 "It moves too little. Lower PIDSCALAR by one (output ×2), or raise PTERM."
             }
@@ -263,8 +263,8 @@ impl Recording {
             (off.abs() > 0.03 * step.abs()).then_some(off > 0.0)
         });
         let sides: Vec<bool> = sides.collect();
-        let swings = sides.windows(2).filter(|pair| pair[0] != pair[1]).count();
-        Some(Outcome { step_counts: step, figures, swings })
+        let reversals = sides.windows(2).filter(|pair| pair[0] != pair[1]).count();
+        Some(Outcome { step_counts: step, figures, reversals })
     }
 }
 
@@ -289,10 +289,10 @@ mod tests {
     fn a_motor_that_falls_short_is_told_to_get_more_and_one_that_arrives_goes_on() {
         assert!(response(|_| 300.0).advice().contains("too little"));
         assert!(response(|t| 1000.0 * (1.0 - (-t / 0.2).exp())).advice().contains("Go on to ITERM"));
-        let swinging = |t: f64| 1000.0 + 800.0 * (t * 8.0).cos();
-        let assistant = response(swinging);
-        assert!(assistant.last().unwrap().swings > 4, "{:?}", assistant.last());
-        assert!(assistant.advice().contains("swings"));
+        let oscillating = |t: f64| 1000.0 + 800.0 * (t * 8.0).cos();
+        let assistant = response(oscillating);
+        assert!(assistant.last().unwrap().reversals > 4, "{:?}", assistant.last());
+        assert!(assistant.advice().contains("oscillates"));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //!
 //! Assumed throughout, since only the commands are public: the relay adds or takes away its amplitude of duty from what the bridge
 //! gave when the test began, switches on the sign of the deviation from the speed or position of that moment, and reports half the
-//! mean swing and the mean period of the last cycles.
+//! mean amplitude and the mean period of the last cycles.
 
 use super::{RelayCommand, RelayOn};
 
@@ -26,7 +26,7 @@ pub(crate) struct RelayTest {
     ticks: u32,
     last_cycle_end: u32,
     measured_ticks: u32,
-    measured_swing: f64,
+    measured_span: f64,
     time_limit_ticks: u32,
 }
 
@@ -44,7 +44,7 @@ pub(crate) enum RelayStep {
 /// What a relay test measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Oscillation {
-    /// Half the peak-to-peak swing, counts/s or counts.
+    /// Half the peak-to-peak oscillation, counts/s or counts.
     pub amplitude: f64,
     /// Length of one cycle, s.
     pub period_s: f64,
@@ -66,7 +66,7 @@ impl RelayTest {
             ticks: 0,
             last_cycle_end: 0,
             measured_ticks: 0,
-            measured_swing: 0.0,
+            measured_span: 0.0,
             time_limit_ticks,
         }
     }
@@ -96,13 +96,13 @@ impl RelayTest {
         self.cycles += 1;
         if self.cycles > SETTLING_CYCLES {
             self.measured_ticks += self.ticks - self.last_cycle_end;
-            self.measured_swing += self.highest - self.lowest;
+            self.measured_span += self.highest - self.lowest;
         }
         self.last_cycle_end = self.ticks;
         (self.lowest, self.highest) = (f64::INFINITY, f64::NEG_INFINITY);
         let cycles = f64::from(MEASURED_CYCLES);
         (self.cycles == SETTLING_CYCLES + MEASURED_CYCLES).then(|| Oscillation {
-            amplitude: self.measured_swing / (2.0 * cycles),
+            amplitude: self.measured_span / (2.0 * cycles),
             period_s: f64::from(self.measured_ticks) * tick_s / cycles,
         })
     }

@@ -10,13 +10,13 @@ static FIELDS: [RegisterField; 12] = [
         "register.pterm",
         "PTERM",
         (0.0, 65_535.0),
-        "On the error of the place; of its sum under a speed command",
+        "On the position error; on its sum under a speed command",
     ),
     RegisterField::number(
         "register.iterm",
         "ITERM",
         (0.0, 65_535.0),
-        "On the sum of the errors of the place; none under a speed command",
+        "On the sum of the position errors; none under a speed command",
     ),
     RegisterField::number(
         "register.dterm",

@@ -20,13 +20,13 @@ use std::time::Duration;
 const STILL_COUNTS: i64 = 2;
 /// Time between two looks at the motor.
 const LOOK_AGAIN: Duration = Duration::from_millis(30);
-/// So many looks in a row must find it still: a motor that swings stands still where it turns.
+/// So many looks in a row must find it still: a motor that oscillates stands still where it turns.
 const STILL_LOOKS: u32 = 4;
 /// A loop that has not brought its motor to a stand within this is switched off.
 const LOOP_LIMIT: Duration = Duration::from_millis(800);
 /// How long a motor may take to stand once its loop is off: it coasts, or something turns it.
 const STAND_LIMIT: Duration = Duration::from_secs(2);
-/// A loop that was switched on again must hold its motor for so many looks, within so many counts of where it stood. A loop that swings
+/// A loop that was switched on again must hold its motor for so many looks, within so many counts of where it stood. A loop that oscillates
 /// needs a few turns to show it: more looks than a motor that is only stopped.
 const HELD_LOOKS: u32 = 10;
 const HELD_COUNTS: i64 = 4;

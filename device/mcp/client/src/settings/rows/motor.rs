@@ -180,7 +180,7 @@ pub(crate) static ROWS: &[Template] = &[
         .default(DefaultValue::Number(0.0))
         .forms(&[Form::field(READ_POSITION_PID, SET_POSITION_PID, &["i"])])
         .help(
-            "Integral gain of the position loop: closes the last counts, and makes a drive with play hunt. \
+            "Integral gain of the position loop: closes the last counts, and makes a drive with backlash hunt. \
              Needs Max I. MCP manual 2.4.7, command 61.",
         ),
     Template::new("motor{n}.position.d", "Position D", Group::Position)
@@ -207,7 +207,7 @@ pub(crate) static ROWS: &[Template] = &[
         .default(DefaultValue::Int(0))
         .forms(&[Form::field(READ_POSITION_PID, SET_POSITION_PID, &["deadzone"])])
         .help(
-            "Position errors up to this count as none, so that play in the gears does not make the motor \
+            "Position errors up to this count as none, so that backlash in the gears does not make the motor \
              hunt. MCP manual 2.4.7, command 61.",
         ),
     Template::new("motor{n}.position.min", "Minimum position", Group::Position)

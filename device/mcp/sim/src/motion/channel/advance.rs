@@ -178,9 +178,9 @@ impl Channel {
         let moving = !run.profile.is_done();
         run.profile.step(tick_s);
         self.mode = Mode::Position(run);
-        let place = f64::from(self.encoder.register.position());
-        let to_target = run.profile.target() - place;
-        let to_profile = run.profile.position() - place;
+        let position = f64::from(self.encoder.register.position());
+        let to_target = run.profile.target() - position;
+        let to_profile = run.profile.position() - position;
         self.note_position_error(if run.is_ramped() { to_profile } else { to_target }, &run, settings);
 
         let bounds = PositionBounds {
@@ -190,7 +190,7 @@ impl Channel {
         let gains = settings.position_gains(&self.law);
         let tracking = self.law.position_form == PositionForm::ProfileTracking;
         let error = if tracking { to_profile } else { to_target };
-        let wanted = self.position.step(error, place, &gains, bounds, &self.law);
+        let wanted = self.position.step(error, position, &gains, bounds, &self.law);
         if tracking {
             self.speed.set(run.profile.speed() + wanted);
             return;

@@ -321,8 +321,8 @@ impl Channel {
                 self.position.restart_derivative();
                 let speed =
                     if self.mode.is_closed() { self.speed.value() } else { self.encoder.estimate(&self.law) };
-                let place = f64::from(self.encoder.register.position());
-                Mode::Position(PositionRun::new(&position, settings, place, speed))
+                let position_counts = f64::from(self.encoder.register.position());
+                Mode::Position(PositionRun::new(&position, settings, position_counts, speed))
             }
         };
         self.begin(mode);

@@ -135,7 +135,7 @@ pub(super) struct PositionRun {
 }
 
 impl PositionRun {
-    pub fn new(position: &PositionMove, settings: &MotionSettings, place: f64, speed: f64) -> Self {
+    pub fn new(position: &PositionMove, settings: &MotionSettings, position_counts: f64, speed: f64) -> Self {
         let target = settings.clamp_position(match position.target {
             PositionTarget::Counts(counts) => counts,
             PositionTarget::Percent(percent_raw) => settings.percent_position(percent_raw),
@@ -151,7 +151,12 @@ impl PositionRun {
             acceleration: rates.rising.map(f64::from),
             deceleration: rates.falling.map(f64::from),
         };
-        PositionRun { profile: Profile::new(limits, f64::from(target), place, speed), limits, rates, target }
+        PositionRun {
+            profile: Profile::new(limits, f64::from(target), position_counts, speed),
+            limits,
+            rates,
+            target,
+        }
     }
 
     pub fn is_ramped(&self) -> bool {

@@ -50,7 +50,7 @@ fn a_relay_around_a_running_speed_keeps_running_around_it() {
 }
 
 #[test]
-fn a_position_relay_swings_around_where_it_began() {
+fn a_position_relay_oscillates_around_where_it_began() {
     let mut rig = Rig::new(&ControlLaw::default(), settings(0.0, 0.0, 0.0), Motor::lag(10_000.0, 0.05));
     rig.channel.encoder_mut().set(700);
     let _ = rig.command(relay(RelayOn::Position, 10_000, 20));
@@ -69,7 +69,7 @@ fn a_position_relay_swings_around_where_it_began() {
 }
 
 #[test]
-fn hysteresis_makes_the_swing_wider() {
+fn hysteresis_makes_the_oscillation_wider() {
     let amplitude_with = |hysteresis| {
         let mut rig = Rig::new(&ControlLaw::default(), settings(0.0, 0.0, 0.0), Motor::lag(20_000.0, 0.1));
         let _ = rig.command(relay(RelayOn::Speed, 9_830, hysteresis));

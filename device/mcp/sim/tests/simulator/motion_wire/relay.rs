@@ -30,7 +30,7 @@ fn a_speed_relay_84_reports_an_oscillation_of_the_motor_and_stops_it() {
 }
 
 #[test]
-fn hysteresis_comes_with_generation_3_and_widens_the_swing() {
+fn hysteresis_comes_with_generation_3_and_widens_the_oscillation() {
     let mut amplitudes = Vec::new();
     for hysteresis in [0, 3_000] {
         let mut bench = Bench::of(Generation::Gen3);
@@ -41,7 +41,7 @@ fn hysteresis_comes_with_generation_3_and_widens_the_swing() {
 }
 
 #[test]
-fn a_position_relay_86_swings_around_its_start() {
+fn a_position_relay_86_oscillates_around_its_start() {
     let mut bench = Bench::new();
     bench.write(22, Payload::new().u32(5_000));
     bench.write(86, Payload::new().u32(16_384));
