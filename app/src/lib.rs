@@ -1,5 +1,7 @@
 //! The program `brushwork`: the window, the command line, and with the feature `bench` what measures them.
 
+#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
+
 #[cfg(feature = "bench")]
 mod bench;
 

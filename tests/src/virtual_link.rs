@@ -223,6 +223,7 @@ impl<M: Machine + 'static> VirtualLink<M> {
     }
 
     /// The reports of all stops so far.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn stops(&self) -> Vec<&StopReport> {
         let stops = self.events.iter().filter_map(|(_, event)| match event {
             Event::Stopped(report) => Some(report),

@@ -177,6 +177,7 @@ impl<'a, L: Law> ExperimentGuard<'a, L> {
         }
     }
 
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn get_ready(&mut self) -> Result<(), Cause> {
         let setup = self.setup;
         L::ready(&setup.held)?;

@@ -1,6 +1,7 @@
 //! What a motor axis does, in figures, and the gains that make it do better. Knows no serial port, no window, no clock and no
 //! simulator.
 //!
+#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
 #![doc = include_str!("../README.md")]
 //!
 #![doc = include_str!("../MEASURED.md")]

@@ -90,6 +90,7 @@ impl<L: Law> Trace<L> {
 
     /// The trace of a raw record.
     #[must_use]
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn of(motor: usize, record: &[Entry<L>]) -> Self {
         let encoder = record.iter().find_map(|entry| match entry {
             Entry::Setup(Ok(setup)) => Some(setup.encoder),
@@ -101,6 +102,7 @@ impl<L: Law> Trace<L> {
     }
 
     /// Takes over a call and its answer.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn take(&mut self, entry: &Entry<L>) {
         match entry {
             Entry::Now(now) => {

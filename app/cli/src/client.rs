@@ -139,7 +139,10 @@ fn at_addresses(target: ConnectTarget, addresses: &[u8]) -> ConnectTarget {
             let options = addresses.iter().map(|address| format!(",address={address}"));
             ConnectTarget::Sim(format!("{model}{}", options.collect::<String>()))
         }
-        other => other,
+        other @ (ConnectTarget::Serial { .. }
+        | ConnectTarget::Tcp { .. }
+        | ConnectTarget::Can { .. }
+        | ConnectTarget::Sim(_)) => other,
     }
 }
 
@@ -219,6 +222,7 @@ fn not_asked(refused: impl Display) -> Exit {
 ///
 /// # Errors
 /// It is refused, or nobody answers; the reasons are said on standard error.
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 pub fn arm(device: &DeviceHandle, scope: ArmScope, interrupt: &Interrupt) -> Result<(), Exit> {
     device.renew();
     ask(device, Request::Arm(scope))?;

@@ -4,6 +4,8 @@
 //! talk to controllers through [`brushwork_core::session`] like the window does; they print data on standard output and words on
 //! standard error.
 
+#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
+
 pub mod args;
 mod client;
 mod drive;

@@ -111,6 +111,7 @@ impl<'a> NewFile<'a> {
     ///
     /// # Errors
     /// As [`NewFile::check`], and if the system refuses; what was there is as it was then.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "the enum is not ours")]
     pub fn write(&mut self, bytes: &[u8]) -> Result<(), NewFileError> {
         self.check()?;
         let written = if is_stream(self.path) {

@@ -23,6 +23,7 @@ pub struct Readings {
 
 impl Readings {
     /// Takes over what an event tells.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn take(&mut self, event: Event) {
         match event {
             Event::Sample(sample) => self.newest.update(&sample),

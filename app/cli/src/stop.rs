@@ -174,7 +174,7 @@ impl LineStop {
         };
         let asked: Vec<u8> = match self.asked {
             Addresses::These(set) => set.iter().collect(),
-            _ => self.written_to(),
+            Addresses::Scan | Addresses::Only(_) | Addresses::Factory => self.written_to(),
         };
         asked.into_iter().filter(|address| !answered(address)).collect()
     }
@@ -215,7 +215,7 @@ impl LineStop {
                 "Nobody answered at {}; the stop was written to these addresses too.",
                 in_words(&silent)
             )),
-            _ => {}
+            Addresses::Scan | Addresses::Only(_) | Addresses::Factory => {}
         }
         lines
     }

@@ -1,6 +1,8 @@
 //! What the window and the command line both do: open what the user names, keep backups and journals, record samples, measure and
 //! tune. Knows no toolkit and no arguments.
 
+#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
+
 pub mod keep;
 pub mod motion;
 pub mod recording;

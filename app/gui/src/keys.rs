@@ -31,6 +31,7 @@ pub fn take_stop_key(ctx: &Context) -> Option<StopKey> {
     })
 }
 
+#[allow(clippy::wildcard_enum_match_arm, reason = "the enum is not ours")]
 fn is_space(event: &Event) -> bool {
     match event {
         Event::Key { key: Key::Space, .. } => true,

@@ -2,6 +2,7 @@
 //!
 //! `model` is plain data, `screens` and `shell` draw it and ask for changes by `command`, and `app` makes them. What differs between families of
 //! controllers, shared code asks `family` and `screens::face`; each family has a folder of its own. `mcl` is the editor for scripts, `debugger` runs them step by step, `tune` is guided tuning.
+#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
 #![allow(
     missing_docs,
     reason = "the window is no library: only the program and its own tests see these items"

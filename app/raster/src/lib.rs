@@ -6,6 +6,8 @@
 //!
 //! It is a crate of its own so that it can be optimised in debug builds, where tests take their pictures.
 
+#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
+
 mod canvas;
 mod texture;
 mod triangle;

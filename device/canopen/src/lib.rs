@@ -5,6 +5,8 @@
 //! sides; [`nmt`] has states and heartbeats. Which objects a controller has is its family's to say. Left out: PDOs, SYNC and TIME,
 //! which no source describes for these controllers, SDO block transfer, node guarding and LSS.
 
+#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
+
 pub mod adapter;
 mod emcy;
 mod frame;

@@ -2,6 +2,8 @@
 //!
 //! A family's own crate puts its client, simulator and axis together behind these traits. Nothing here knows which families there are.
 
+#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
+
 pub mod simulator;
 pub mod tuned;
 

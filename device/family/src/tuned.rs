@@ -133,6 +133,7 @@ impl<A: Tuned<Law: LeadingLaw + LawProbe>, B: OtherTuned> Tuned for OneOf<A, B> 
 
 /// What a failed exchange means to the tuner.
 #[must_use]
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 pub fn reported(error: &ExchangeError) -> AxisError {
     if error.interruption().is_some() {
         AxisError::Stopped

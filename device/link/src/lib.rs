@@ -4,6 +4,8 @@
 //! Units stand in names; times are durations since the epoch of the [`Clock`] in use. There is no window here
 //! and no simulator. See `ARCHITECTURE.md`.
 
+#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
+
 pub mod clock;
 pub mod device;
 pub mod driver;

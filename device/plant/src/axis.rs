@@ -214,7 +214,7 @@ impl Axis {
     pub(crate) fn foretell(&mut self, output: BridgeOutput, step_s: f64) -> (f64, f64) {
         let duty = match output {
             BridgeOutput::Duty(duty) if !self.lead_open => self.winding_duty(duty),
-            _ => return (0.0, 0.0),
+            BridgeOutput::Duty(_) | BridgeOutput::Brake | BridgeOutput::Coast => return (0.0, 0.0),
         };
         let piece_s = step_s / self.pieces(step_s);
         let (at_none, per_volt) = self.mechanics.charge_line(piece_s);

@@ -44,6 +44,7 @@ pub fn result_of(operator: Binary, of: Type) -> Type {
 
 /// The type of what an operator of one operand gives.
 #[must_use]
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 pub fn result_of_unary(operator: Unary, of: Type) -> Type {
     match operator {
         Unary::Negative if of == Type::Float => Type::Float,
@@ -86,6 +87,7 @@ pub fn binary(operator: Binary, of: Type, a: u32, b: u32) -> Result<u32, Divisio
     }
 }
 
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 fn floats(operator: Binary, a: f32, b: f32) -> u32 {
     let value = match operator {
         Binary::Add => a + b,
@@ -99,6 +101,7 @@ fn floats(operator: Binary, a: f32, b: f32) -> u32 {
     value.to_bits()
 }
 
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 fn truth_of_floats(operator: Binary, a: f32, b: f32) -> u32 {
     let (left, right) = (a != 0.0, b != 0.0);
     u32::from(match operator {
@@ -116,6 +119,7 @@ fn truth_of_floats(operator: Binary, a: f32, b: f32) -> u32 {
     })
 }
 
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 fn signed(operator: Binary, a: i32, b: i32) -> Result<u32, DivisionByZero> {
     let wide = i64::from(a) * i64::from(b);
     Ok(match operator {
@@ -171,6 +175,7 @@ fn unsigned(operator: Binary, a: u32, b: u32) -> Result<u32, DivisionByZero> {
 
 /// What an operator of one operand gives. `of` is the operand's type; float functions want a float.
 #[must_use]
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 pub fn unary(operator: Unary, of: Type, value: u32) -> u32 {
     let float = f32::from_bits(value);
     match operator {
@@ -193,6 +198,7 @@ pub fn unary(operator: Unary, of: Type, value: u32) -> u32 {
     }
 }
 
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 fn float_function(operator: Unary, x: f32) -> f32 {
     match operator {
         Unary::FAbs => x.abs(),

@@ -1,5 +1,6 @@
 //! Script languages of motor controllers: front ends, one byte code, one virtual machine.
 //!
+#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
 #![doc = include_str!("../README.md")]
 
 pub mod arithmetic;

@@ -3,6 +3,8 @@
 //! Client, simulator and settings table of every family speak in these words. Numbers as they lie on the wire are *raw*;
 //! [`Field::physical`] and [`Field::raw`] lead to physical ones and back.
 
+#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
+
 mod code;
 mod field;
 mod hex;

@@ -319,14 +319,16 @@ fn run<P: FaultyPlant>(class: &Class, subject: &Subject<P>) -> Run {
             let trial_s = (subject.whole_s[nth] - span_s).max(0.1);
             (request_of(specimen, P::WHOLE[nth]), span_s + draw.between(STRIKES) * trial_s)
         }
-        _ => {
+        Fault::Before(_) | Fault::During(_) | Fault::LinkDrop | Fault::EndStop | Fault::Window => {
             let strike_s = probe_s.min(0.5 * span_s) + draw.between(STRIKES) * (span_s - probe_s).max(0.3);
             (identification_only(specimen), strike_s)
         }
     };
     let mut axis = match class.fault {
         Fault::EndStop => with_end_stops(subject).axis(),
-        _ => subject.specimen.axis(),
+        Fault::Before(_) | Fault::During(_) | Fault::InTrial(_) | Fault::LinkDrop | Fault::Window => {
+            subject.specimen.axis()
+        }
     };
     let line = P::line(&mut axis);
     let start = line.unit().time();

@@ -2,6 +2,8 @@
 //!
 //! The tuner sees packet serial alone; what the plants really are is used here, to judge it.
 
+#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
+
 mod bounds;
 pub mod cache;
 pub mod faults;

@@ -191,7 +191,11 @@ impl Decoder {
         let (generation, values) =
             others.into_iter().find_map(|other| match parse_reply(request, other, bytes) {
                 ReplyProgress::Done { values, used } if used == bytes.len() => Some((other, values)),
-                _ => None,
+                ReplyProgress::NeedMore { .. }
+                | ReplyProgress::Done { .. }
+                | ReplyProgress::BadCrc { .. }
+                | ReplyProgress::BadAck { .. }
+                | ReplyProgress::Malformed { .. } => None,
             })?;
         self.set_generation(generation);
         Some(describe_reply(request, &values, generation))

@@ -41,6 +41,7 @@ pub fn judge(identity: &Identity, readings: &Readings) -> Judged {
 }
 
 /// The motor's own full speed: of both motors, the slower one's.
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 pub fn qpps(motors: &[Motor], device: &DeviceHandle, interrupt: &Interrupt) -> Result<u32, Exit> {
     let mut slowest = u32::MAX;
     for motor in motors {

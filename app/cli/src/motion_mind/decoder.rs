@@ -109,6 +109,7 @@ impl Decoder {
         Record::new(self.open_since, Direction::ToController, std::mem::take(&mut self.open), text)
     }
 
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn note_motion(&mut self, address: Address, command: Command, protocol: Protocol) {
         match command {
             Command::ChangeSpeed(0) | Command::MoveAtVelocity(0) | Command::Restore | Command::Reset => {
@@ -265,7 +266,7 @@ impl Awaited<Asked> {
     fn read(&self, known: Option<Returns>) -> Option<(String, usize)> {
         let whole = |progress| match progress {
             Progress::Done { reply, used } => Some((describe_reply(&reply), used)),
-            _ => None,
+            Progress::Incomplete | Progress::Bad(_) => None,
         };
         let Some(command) = &self.request.command else {
             return whole(parse_line_reply(&Command::Reset, Returns::default(), &self.bytes));
@@ -288,7 +289,7 @@ impl Awaited<Asked> {
     fn bad(&self) -> Option<String> {
         match self.parse(self.request.command.as_ref()?, Returns::default()) {
             Progress::Bad(bad) => Some(bad.to_string()),
-            _ => None,
+            Progress::Incomplete | Progress::Done { .. } => None,
         }
     }
 }

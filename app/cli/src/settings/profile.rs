@@ -23,7 +23,9 @@ pub fn export(args: &ExportArgs, out: &mut Output, interrupt: &Interrupt) -> Res
         NewFileError::System { path, source } => {
             Exit::Failed.saying(ProfileFileError::Write { path, source }.to_string())
         }
-        refused => refused.into(),
+        refused @ (NewFileError::Exists { .. }
+        | NewFileError::OwnInput { .. }
+        | NewFileError::Folder { .. }) => refused.into(),
     })?;
     let count = counted(profile.settings.len());
     out.line(format!("{count} of {} are in {}.", controller.describe(), args.file.display()))?;

@@ -145,6 +145,7 @@ fn request(args: &RunArgs, method: Method) -> TuneRequest {
     }
 }
 
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 fn conclude(
     args: &RunArgs,
     report: &Report,

@@ -169,7 +169,7 @@ fn begin(store: &Store, origin: &Origin, entry: &Entry) -> Result<Begun, KeepErr
             date: backup.date.clone(),
             ..store.eeprom(&origin.unit).unwrap_or_else(|| profile(origin, entry, SettingsImage::default()))
         },
-        _ => backup,
+        Act::Write | Act::Defaults | Act::Reload | Act::Firmware | Act::Trial => backup,
     };
     let journal = Journal { act: entry.act, before, wanted: profile(origin, entry, entry.wanted.clone()) };
     let path = store.open_journal(&origin.unit, &journal)?;

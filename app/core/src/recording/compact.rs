@@ -245,7 +245,7 @@ pub fn read(
         Framed::Sound(bytes) => {
             head_of(&bytes).ok_or_else(|| no_recording("its head is of another version"))?
         }
-        _ => return Err(no_recording("its head is damaged")),
+        Framed::End | Framed::CutOff | Framed::Damaged => return Err(no_recording("its head is damaged")),
     };
     begin(&head);
     let mut last_us = 0;

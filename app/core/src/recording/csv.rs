@@ -377,6 +377,7 @@ fn io(path: &str, source: std::io::Error) -> RecordingError {
 }
 
 /// What the reader of the format has found wrong.
+#[allow(clippy::wildcard_enum_match_arm, reason = "the enum is not ours")]
 fn broken(path: &str, error: &csv::Error) -> RecordingError {
     let line = error.position().map_or(1, csv::Position::line);
     let what = match error.kind() {

@@ -187,6 +187,7 @@ fn lock(progress: &Mutex<Progress>) -> MutexGuard<'_, Progress> {
     progress.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+#[allow(clippy::wildcard_enum_match_arm, reason = "the enum is not ours")]
 fn sentence(path: &str, error: &std::io::Error) -> String {
     let remedy = match error.kind() {
         std::io::ErrorKind::StorageFull | std::io::ErrorKind::QuotaExceeded => {

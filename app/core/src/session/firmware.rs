@@ -96,7 +96,10 @@ impl LoaderPlace {
                     None => return Ok(None),
                 }
             }
-            same => same.clone(),
+            same @ (ConnectTarget::Serial { .. }
+            | ConnectTarget::Tcp { .. }
+            | ConnectTarget::Can { .. }
+            | ConnectTarget::Sim(_)) => same.clone(),
         };
         connect(&target, self.simulation.clone())
             .map(|(transport, _)| Some(transport))

@@ -106,7 +106,9 @@ pub fn connect(target: &ConnectTarget, running: Option<Arc<Simulation>>) -> Resu
 fn on_can(target: &ConnectTarget, simulation: Option<&Simulation>) -> Option<(Option<NodeId>, Form)> {
     match target {
         ConnectTarget::Can { node, form, .. } => Some((*node, *form)),
-        _ => simulation?.can_form().map(|form| (None, form)),
+        ConnectTarget::Serial { .. } | ConnectTarget::Tcp { .. } | ConnectTarget::Sim(_) => {
+            simulation?.can_form().map(|form| (None, form))
+        }
     }
 }
 
@@ -122,7 +124,9 @@ fn spawn_on_can(
         addresses: match options.addresses {
             // What was asked is an address of packet serial, which a node does not have.
             Addresses::Only(address) if NodeId::new(address).is_none() => Addresses::Scan,
-            addresses => addresses,
+            addresses @ (Addresses::Scan | Addresses::Only(_) | Addresses::These(_) | Addresses::Factory) => {
+                addresses
+            }
         },
         poll: options.poll,
         simulated: simulation.is_some(),

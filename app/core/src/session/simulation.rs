@@ -113,6 +113,7 @@ impl Simulation {
     ///
     /// # Errors
     /// The cable is unplugged, or the machine has ended.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn connect(&self) -> Result<ChannelTransport, SimulationError> {
         let ChannelEnds { to_controller, from_controller } =
             self.server.new_channel().map_err(|error| match error {

@@ -174,7 +174,11 @@ pub fn shortcuts(ctx: &Context, model: &mut Model) -> Commands {
                     Keys::Shortcut(shortcut) if general => shortcut,
                     Keys::OnMcl(shortcut) if !general && on_mcl => shortcut,
                     Keys::InText(shortcut) if !general && in_text => shortcut,
-                    _ => continue,
+                    Keys::None
+                    | Keys::Shortcut(_)
+                    | Keys::OnMcl(_)
+                    | Keys::InText(_)
+                    | Keys::Elsewhere(_) => continue,
                 };
                 if modifiers(shortcut) == count && ctx.input_mut(|input| input.consume_shortcut(&shortcut)) {
                     pressed.push(action);
@@ -240,6 +244,7 @@ fn settings_idle(model: &Model) -> Ready {
 }
 
 /// The MCL screen is shown.
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 fn on_mcl(model: &Model) -> Ready {
     match model.screen {
         Screen::MclEditor => Ok(()),

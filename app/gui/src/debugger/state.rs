@@ -398,6 +398,7 @@ impl Expressions {
 pub const NO_NAMES: &str =
     "The program in the controller is not the text in front: open its text, or download this one (F5).";
 
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 fn ended(reason: &Reason) -> Happened {
     match reason {
         Reason::Ended => Some("script ended".to_owned()),
@@ -407,6 +408,7 @@ fn ended(reason: &Reason) -> Happened {
     }
 }
 
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 fn register_of(op: &Op) -> Option<RegisterId> {
     match op {
         Op::LoadRegister(id, _)

@@ -93,6 +93,7 @@ pub fn reason_ui(ui: &mut Ui, model: &Model) {
     });
 }
 
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 fn indicator_of(is_paused: bool, is_running: bool, reason: &Reason) -> IndicatorState {
     match reason {
         Reason::Faulted(_) => IndicatorState::Error,

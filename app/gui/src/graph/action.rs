@@ -142,6 +142,7 @@ const ZERO_STEP: f64 = 1.0 / 16.0;
 
 impl LiveGraph {
     /// Does one thing.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn act(&mut self, action: GraphAction) {
         match action {
             GraphAction::BackToLive => {
@@ -168,6 +169,7 @@ impl LiveGraph {
     }
 
     /// What only changes how things are looked at.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn look(&mut self, action: GraphAction) {
         let sheet = self.sheet_mut();
         let (span_s, selected) = (sheet.span_s(), sheet.selected);
@@ -197,6 +199,7 @@ impl LiveGraph {
         }
     }
 
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn rescale(&mut self, action: GraphAction, selected: usize) {
         let sheet = self.sheet_mut();
         let Some(scale) = sheet.channels.get(selected).map(|channel| channel.scale) else { return };

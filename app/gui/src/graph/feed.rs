@@ -35,6 +35,7 @@ impl LiveGraph {
     }
 
     /// Leaves a mark for an event that is one, at the event's own time or else at `now_s`.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn note(&mut self, event: &Event, now_s: f64) {
         match event {
             Event::Driven { sent_at, drive, .. } => {

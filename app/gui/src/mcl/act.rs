@@ -14,6 +14,7 @@ use crate::model::message::Gravity;
 
 impl Editor {
     /// Does what was asked.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn act(&mut self, action: MclAction, ctx: &Context) {
         let front = self.front().id();
         match action {
@@ -42,6 +43,7 @@ impl Editor {
         }
     }
 
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn act_on_view(&mut self, action: MclAction, ctx: &Context) {
         match action {
             MclAction::ToggleHidden => self.options.hidden = !self.options.hidden,
@@ -75,6 +77,7 @@ impl Editor {
         }
     }
 
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn act_on_lines(&mut self, action: MclAction, ctx: &Context) {
         let document = self.front_mut();
         match action {
@@ -105,6 +108,7 @@ impl Editor {
         }
     }
 
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn act_on_marks(&mut self, action: MclAction) {
         let document = self.front_mut();
         let line = document.caret_line();
@@ -141,6 +145,7 @@ impl Editor {
         }
     }
 
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn find(&mut self, action: MclAction) {
         if !self.find.open {
             self.find.show(&self.documents[self.front], false);

@@ -165,7 +165,9 @@ fn perform(task: Task, journal: Option<&mut Journal>) -> Option<Done> {
                 .collect();
             (!changed.is_empty()).then_some(Done::Changed(changed))
         }
-        other => keep(other, journal?),
+        other @ (Task::Keep(..) | Task::Forget(_) | Task::FindLeft | Task::ForgetLeft(_) | Task::End) => {
+            keep(other, journal?)
+        }
     }
 }
 
@@ -188,7 +190,7 @@ fn keep(task: Task, journal: &mut Journal) -> Option<Done> {
         }
         Task::ForgetLeft(left) => journal.forget_left(&left),
         Task::End => journal.end(),
-        _ => {}
+        Task::Open(_) | Task::Reload(..) | Task::Save { .. } | Task::Export { .. } | Task::Look(_) => {}
     }
     None
 }

@@ -15,6 +15,7 @@ pub const fn filter(list_is_open: bool) -> EventFilter {
 }
 
 /// Does what was typed since the last frame. `page` is how many rows are in view. The list of words goes along with what is typed.
+#[allow(clippy::wildcard_enum_match_arm, reason = "the enum is not ours")]
 pub fn take(ui: &Ui, id: Id, document: &mut Document, list: &mut Option<Completion>, page: usize) {
     let owns_ime = ui.memory(|memory| memory.owns_ime_events(id));
     for event in ui.input(|input| input.filtered_events(&filter(true))) {
@@ -53,6 +54,7 @@ fn follow(document: &Document, list: &mut Option<Completion>, before: (u64, Care
 }
 
 /// Keys that belong to the list of words while it is open. True if the key was one.
+#[allow(clippy::wildcard_enum_match_arm, reason = "the enum is not ours")]
 fn in_list(document: &mut Document, list: &mut Option<Completion>, key: Key, modifiers: Modifiers) -> bool {
     if key == Key::Space && modifiers.command {
         *list = Completion::of(document, true);
@@ -76,6 +78,7 @@ fn in_list(document: &mut Document, list: &mut Option<Completion>, key: Key, mod
     true
 }
 
+#[allow(clippy::wildcard_enum_match_arm, reason = "the enum is not ours")]
 fn press(document: &mut Document, key: Key, modifiers: Modifiers, page: usize) {
     if let Some(way) = way(key, modifiers, page) {
         return go(document, way, modifiers.shift);
@@ -108,6 +111,7 @@ pub fn go(document: &mut Document, way: Move, extend: bool) {
     document.view.reveal = Reveal::Nearest;
 }
 
+#[allow(clippy::wildcard_enum_match_arm, reason = "the enum is not ours")]
 fn way(key: Key, modifiers: Modifiers, page: usize) -> Option<Move> {
     let by_word = if cfg!(target_os = "macos") { modifiers.alt } else { modifiers.command };
     let to_end = cfg!(target_os = "macos") && modifiers.command;

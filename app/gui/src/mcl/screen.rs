@@ -47,7 +47,7 @@ pub fn screen_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             Tab::Debugger if room.height() < LOWEST => ("mcl debugger", DEBUGGER_HEIGHT * 0.65),
             Tab::Debugger => ("mcl debugger", DEBUGGER_HEIGHT),
             _ if room.height() < LOW => ("mcl panel", PANEL_HEIGHT * 0.7),
-            _ => ("mcl panel", PANEL_HEIGHT),
+            Tab::Problems | Tab::Terminal => ("mcl panel", PANEL_HEIGHT),
         };
         let area = Area::bottom(id).resizable(true).default_size(height);
         area.size_range(PANEL_RANGE).frame(bare).show(ui, |ui| panel_ui(ui, model, &mut actions, commands));

@@ -314,6 +314,7 @@ impl Connection {
     }
 
     /// Whether the event is about something that may have changed the controller's settings past [`Settings`].
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn changes_ram(&self, event: &Event) -> bool {
         match event {
             Event::Transacted { id, .. } => self.traffic.kept.is_sent(*id),

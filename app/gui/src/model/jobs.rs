@@ -29,6 +29,7 @@ impl Jobs {
     }
 
     /// Whose job the event is about. Its end is the last that is told of a job.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn owner(&mut self, event: &Event) -> Option<Owner> {
         match event {
             Event::JobEnded(report) => self.0.remove(&report.id),

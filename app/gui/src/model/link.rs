@@ -206,6 +206,7 @@ impl LinkView {
         Vec::new()
     }
 
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn disarmed(&mut self, reason: &DisarmReason) -> Vec<Effect> {
         if let (DisarmReason::LinkLost, Arming::Armed { controller_timeout, .. }) = (reason, self.arming) {
             self.lost_while_armed = Some(controller_timeout);

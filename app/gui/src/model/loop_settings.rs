@@ -134,7 +134,7 @@ impl UnitSettings {
         let Some(row) = self.table().row(&key) else { return };
         let value = match row.kind {
             Kind::Int => SettingValue::Int(value.round() as i64),
-            _ => row.settle(SettingValue::Number(value)),
+            Kind::Bool | Kind::Fixed { .. } | Kind::Choice(_) => row.settle(SettingValue::Number(value)),
         };
         self.set(&key, value);
     }
@@ -193,6 +193,6 @@ pub fn number(value: SettingValue) -> Option<f64> {
     match value {
         SettingValue::Int(whole) => Some(whole as f64),
         SettingValue::Number(number) => Some(number),
-        _ => None,
+        SettingValue::Bool(_) | SettingValue::Choice(_) | SettingValue::UnknownCode(_) => None,
     }
 }

@@ -85,7 +85,9 @@ impl<T> Watched<T> {
         let (ticket, ending) = self.take(event)?;
         Some(match ticket.ending(ending) {
             JobEnding::Done(value) => Ok(value),
-            ending => Err(unfinished(ticket.name(), &ending)),
+            ending @ (JobEnding::Interrupted(_) | JobEnding::Failed(_) | JobEnding::Panicked(_)) => {
+                Err(unfinished(ticket.name(), &ending))
+            }
         })
     }
 }

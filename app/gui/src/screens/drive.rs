@@ -89,6 +89,7 @@ pub fn drive_ui(
 }
 
 /// The switch, the risk, and what stands in the way.
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 pub fn arm_ui(ui: &mut Ui, scope: ArmScope, link: &LinkView, family: &dyn Family, commands: &mut Commands) {
     let palette = Palette::of(ui);
     let armed = link.arming.is_armed_for(scope);

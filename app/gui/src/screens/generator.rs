@@ -62,7 +62,7 @@ fn profile_ui(ui: &mut Ui, model: &mut Model, mode: Mode) {
     let unit = if by_points { Mode::Position.unit() } else { mode.unit() };
     let (range, decimals) = match mode {
         Mode::Duty if !by_points => (-100.0..=100.0, 1),
-        _ => (COUNTS, 0),
+        Mode::Duty | Mode::Speed | Mode::Position => (COUNTS, 0),
     };
     let step = 10f64.powi(-decimals) * 10.0;
     let setpoint = |name| field(name, unit, range.clone(), decimals as usize, step);

@@ -17,7 +17,9 @@ use crate::widgets::text_field::text_field_ui;
 pub fn loop_of(report: &Report) -> Loop {
     match report.request.method {
         brushwork_tuning::tune::Method::Velocity => Loop::Velocity,
-        _ => Loop::Position,
+        brushwork_tuning::tune::Method::Pd
+        | brushwork_tuning::tune::Method::Pid
+        | brushwork_tuning::tune::Method::Piv => Loop::Position,
     }
 }
 

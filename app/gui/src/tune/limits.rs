@@ -50,7 +50,9 @@ fn limited(limit: &Limit, level: f64) -> String {
     };
     match limit.by {
         Bound::Backlash => format!("{verb} {what}."),
-        _ => format!("{verb} {what}; {percent:.0} % of what level {level:.0} allows."),
+        Bound::Sensitivity | Bound::Lag | Bound::LightLoad | Bound::DutyNoise => {
+            format!("{verb} {what}; {percent:.0} % of what level {level:.0} allows.")
+        }
     }
 }
 

@@ -32,7 +32,7 @@ fn steps(trace: &Trace, stretch: &Stretch) -> Vec<Step> {
         .filter_map(|drive| match drive.input {
             Input::Speed(speed) if !stretch.is_position => Some((drive.t, speed)),
             Input::Position(counts, _) if stretch.is_position => Some((drive.t, counts)),
-            _ => None,
+            Input::Duty(_) | Input::Speed(_) | Input::Position(..) => None,
         })
         .collect();
     let start = trace.points.iter().rev().find(|point| point.t <= stretch.from_s).map(|point| point.counts);

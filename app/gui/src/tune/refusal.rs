@@ -15,6 +15,7 @@ use crate::model::watched::interruption;
 use crate::theme::Palette;
 
 /// What to do, in the order in which it is best tried.
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 fn steps(cause: Cause) -> &'static [&'static str] {
     match cause {
         Cause::EncoderReversed => &[

@@ -61,6 +61,7 @@ pub struct Sketch {
 
 impl Sketch {
     /// The drawing for a cause; none where there is nothing to look at.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn of(cause: Cause) -> Option<Self> {
         let sound = Self::default();
         let unit = |word, caption| Self { unit: Some(word), caption, ..sound };

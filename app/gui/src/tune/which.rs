@@ -12,6 +12,7 @@ pub enum Loop {
 }
 
 impl Loop {
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub const fn of(screen: Screen) -> Option<Self> {
         match screen {
             Screen::Velocity => Some(Self::Velocity),

@@ -96,7 +96,9 @@ fn value_ui(ui: &mut Ui, pin: usize, label: &str, signal: PinSignal, actions: &m
     if field.numeric.ui(ui, &mut value).changed() {
         let signal = match signal {
             PinSignal::Volts { .. } => PinSignal::Volts { volts: value },
-            _ => PinSignal::Pulse { microseconds: value },
+            PinSignal::Open | PinSignal::Pulse { .. } | PinSignal::Encoder { .. } => {
+                PinSignal::Pulse { microseconds: value }
+            }
         };
         actions.push(WorldAction::SetPin { pin, signal });
     }

@@ -101,7 +101,10 @@ impl Transfer {
                 self.begin_segments()
             }
             Response::SegmentDownloaded { toggle } => self.segment_taken(toggle),
-            _ => Progress::Passed,
+            Response::UploadExpedited { .. }
+            | Response::UploadSegmented { .. }
+            | Response::Downloaded { .. }
+            | Response::Abort { .. } => Progress::Passed,
         }
     }
 

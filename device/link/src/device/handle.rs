@@ -52,6 +52,7 @@ impl DeviceHandle {
     }
 
     /// Queues a request. Disarm and disconnect are not queued but seen at once.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn request(&self, request: Request) -> Result<(), RequestRefused> {
         match request {
             Request::Disarm => self.signals.disarm(),

@@ -114,6 +114,7 @@ pub enum ExchangeError {
 impl ExchangeError {
     /// Whether the link itself is gone, so that nothing more can be asked.
     #[must_use]
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn is_link_lost(&self) -> bool {
         match self {
             Self::Transport { .. } => true,
@@ -124,6 +125,7 @@ impl ExchangeError {
 
     /// Whether the controller was asked and did not answer in time.
     #[must_use]
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn is_no_answer(&self) -> bool {
         match self {
             Self::TimedOut { .. } => true,
@@ -134,6 +136,7 @@ impl ExchangeError {
 
     /// Whether the controller was asked and answered nothing or nothing that fits, as a unit does that lacks the command.
     #[must_use]
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn is_unusable_answer(&self) -> bool {
         match self {
             Self::TimedOut { .. }
@@ -148,6 +151,7 @@ impl ExchangeError {
 
     /// The byte that came in place of an acknowledgement.
     #[must_use]
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn answered(&self) -> Option<u8> {
         match self {
             Self::BadAcknowledgement { got, .. } => Some(*got),
@@ -158,6 +162,7 @@ impl ExchangeError {
 
     /// What came first, if the exchange was cut short.
     #[must_use]
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn interruption(&self) -> Option<Interruption> {
         match self {
             Self::Interrupted { cause } => Some(*cause),
@@ -168,6 +173,7 @@ impl ExchangeError {
 
     /// The error with its causes in one line.
     #[must_use]
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn full(&self) -> String {
         match self {
             Self::Transport { source } => format!("{self}: {}", source.full()),

@@ -111,6 +111,7 @@ impl Coding {
 }
 
 /// Ways to write a unit and the factor from each to the unit itself; the unit's own symbol always counts too.
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 pub(super) fn unit_forms(unit: Unit) -> &'static [(&'static str, f64)] {
     match unit {
         Unit::Volts => &[("volts", 1.0), ("volt", 1.0), ("mV", 1e-3)],

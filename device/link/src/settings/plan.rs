@@ -104,7 +104,7 @@ pub(super) fn rows_involved<'t>(table: &'t SettingsTable, keys: &[&str]) -> Vec<
 fn whole_word_of(row: &Row) -> Option<&'static str> {
     match row.carrier {
         Carrier::Wire { read: Source::Reply { place, .. }, write: None } => Some(place.field),
-        _ => None,
+        Carrier::Wire { .. } | Carrier::NoWireForm { .. } => None,
     }
 }
 

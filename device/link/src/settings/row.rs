@@ -443,7 +443,7 @@ impl Row {
     fn numeric(&self, number: f64) -> SettingValue {
         match self.kind {
             Kind::Int => SettingValue::Int(number as i64),
-            _ => self.settle(SettingValue::Number(number)),
+            Kind::Bool | Kind::Fixed { .. } | Kind::Choice(_) => self.settle(SettingValue::Number(number)),
         }
     }
 }

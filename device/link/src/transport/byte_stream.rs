@@ -61,6 +61,7 @@ pub enum TransportError {
 
 impl TransportError {
     /// Sorts an operating system error into "gone" and everything else.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub(crate) fn from_io(action: &'static str, error: std::io::Error) -> Self {
         use std::io::ErrorKind as Kind;
         match error.kind() {
@@ -79,7 +80,7 @@ impl TransportError {
     pub fn full(&self) -> String {
         match self {
             Self::Io { source, .. } => format!("{self}: {source}"),
-            _ => self.to_string(),
+            Self::Gone { .. } | Self::WriteStuck { .. } => self.to_string(),
         }
     }
 }

@@ -95,6 +95,7 @@ fn open_port(path: &str, baud: u32) -> serialport::Result<Box<dyn SerialPort>> {
 }
 
 /// Finds out why a port did not open. The crate has few kinds, so the system is asked again.
+#[allow(clippy::wildcard_enum_match_arm, reason = "the enum is not ours")]
 fn explain(path: &str, baud: u32, error: &serialport::Error) -> OpenError {
     let path = path.to_owned();
     let detail = error.description.clone();

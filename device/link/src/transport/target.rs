@@ -135,7 +135,9 @@ impl fmt::Display for ConnectTarget {
                             write!(f, ",baud={baud}")?;
                         }
                     }
-                    other => write!(f, "can:{other}")?,
+                    other @ (Self::Tcp { .. } | Self::Can { .. } | Self::Sim(_)) => {
+                        write!(f, "can:{other}")?;
+                    }
                 }
                 if let Some(node) = node {
                     write!(f, ",node={}", node.get())?;

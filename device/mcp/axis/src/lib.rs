@@ -3,6 +3,8 @@
 //! The device thread of the program and the simulated link of the tuning bench both carry them, so that what is measured is what is
 //! shipped. [`McpLaw`] is what the tuner knows of the controller's loops.
 
+#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
+
 mod law;
 mod probe;
 mod registers;

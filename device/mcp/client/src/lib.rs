@@ -3,6 +3,8 @@
 //!
 //! [`McpDriver`] is the family as shared code knows it, and [`MCP`] its name. Everything else here is for those who know that they have such a controller in front of them.
 
+#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
+
 pub mod can;
 mod controller;
 pub mod diagnosis;

@@ -1,5 +1,7 @@
 //! MCP and RoboClaw controllers whole: their driver, their simulated units and the tuning of their loops, as a program lists them.
 
+#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
+
 mod encoder;
 pub mod sim_spec;
 mod simulator;

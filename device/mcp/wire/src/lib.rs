@@ -4,6 +4,7 @@
 //! Units stand in names (`_counts`, `_volts`, `_amps`). A value as it lies on the wire is called *raw*; the factor that turns it into a
 //! physical one stands in [`packet_serial::scale`] and nowhere else. Start at [`packet_serial`].
 //!
+#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
 #![doc = include_str!("../README.md")]
 
 pub mod canopen;

@@ -7,6 +7,8 @@
 //! The unit has no time-out on its serial line. A fence does its work: VNLIMIT and VPLIMIT are kept a little ahead of the motor,
 //! so that it goes no farther when the host has died.
 
+#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
+
 mod clock;
 mod fence;
 pub mod law;

@@ -3,6 +3,8 @@
 //! [`MotionMindDriver`] is the family as shared code knows it, and [`MOTION_MIND`] its name. Everything else here is for those who know that they have such a controller in front of
 //! them.
 
+#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
+
 mod controller;
 mod driver;
 mod family;

@@ -54,6 +54,7 @@ impl Default for Limits {
 
 impl OpenLoop {
     /// One loop of 5 ms. `is_forward` is what switch 5 says in mode 2.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn turn(
         &mut self,
         mode: Mode,
@@ -77,7 +78,7 @@ impl OpenLoop {
             Mode::Analog => self.approach(analog_duty(store, inputs), step),
             Mode::Serial => self.approach(self.asked, step),
             Mode::Buttons => self.press(inputs, step, is_forward),
-            _ => self.duty = 0,
+            Mode::SerialPid | Mode::AnalogPid | Mode::FactoryRestore | Mode::FactoryTest => self.duty = 0,
         }
         self.duty
     }

@@ -82,7 +82,7 @@ impl Inputs {
         self.index = is_low(index);
         let pulse_us = match index {
             PinState::Pulse { microseconds } if microseconds > 0.0 => Some(microseconds),
-            _ => None,
+            PinState::Open | PinState::Volts(_) | PinState::Pulse { .. } | PinState::Counts(_) => None,
         };
         self.pulse_steps = pulse_us.map(|microseconds| (microseconds / PULSE_STEP_US).round() as i64);
         if mode == Mode::RadioControl {

@@ -5,6 +5,7 @@
 //!
 //! What the manual leaves open stands in [`assumed`].
 //!
+#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
 #![doc = include_str!("../README.md")]
 
 pub mod assumed;

@@ -93,7 +93,7 @@ impl Loop {
                 let step = self.pid(store, wanted_velocity - velocity);
                 Turn { duty: self.output + step, in_position: wanted_velocity == velocity }
             }
-            _ => {
+            Goal::Position(_) | Goal::Velocity(_) => {
                 let error = self.setpoint - position;
                 let feed_forward = wanted_velocity * store.get(number::VELOCITYFF) / 255;
                 let duty = self.pid(store, error) + feed_forward;

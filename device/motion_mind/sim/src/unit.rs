@@ -240,6 +240,7 @@ impl MotionMind {
     }
 
     /// Whether the feedback tells where the motor is from the first moment on.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn has_absolute_feedback(&self) -> bool {
         match self.config.mode {
             Mode::RadioControl => true,
@@ -277,7 +278,7 @@ impl MotionMind {
         match self.config.mode {
             Mode::SerialPid | Mode::AnalogPid => true,
             Mode::RadioControl => self.store.has(function::RCPOS),
-            _ => false,
+            Mode::Analog | Mode::Buttons | Mode::Serial | Mode::FactoryRestore | Mode::FactoryTest => false,
         }
     }
 
@@ -305,6 +306,7 @@ impl MotionMind {
         self.save_position(velocity);
     }
 
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn measured_position(&mut self) -> i64 {
         let is_encoder_in_mode_5 = self.store.has(function::RCPOS);
         match self.config.mode {
@@ -365,6 +367,7 @@ impl MotionMind {
     }
 
     /// Lets the setpoint of modes 0 and 5 follow its input.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn follow_input(&mut self) {
         let inputs = &self.running.inputs;
         let target = match self.config.mode {
@@ -422,6 +425,7 @@ impl MotionMind {
         address.is_broadcast() || address == self.address()
     }
 
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn execute(&mut self, command: &Command) -> Reply {
         match *command {
             Command::ChangeSpeed(duty) if self.config.mode == Mode::Serial => {
@@ -470,6 +474,7 @@ impl MotionMind {
         Reply::Returned(Returned::of(returns, position, velocity, time))
     }
 
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn takes_moves(&self) -> bool {
         match self.config.mode {
             Mode::SerialPid => true,

@@ -6,6 +6,7 @@
 //!
 //! The self-test line `Z` can be read, by a simulated controller, but not written: a unit needs a power cycle after it.
 //!
+#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
 #![doc = include_str!("../README.md")]
 
 mod address;

@@ -181,6 +181,7 @@ impl Debugger {
     }
 
     /// Does what was asked for; without a machine what concerns one is passed by.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn ask<H: Host + ?Sized>(&mut self, request: Request, machine: Option<&mut Machine>, host: &mut H) {
         match request {
             Request::Set { id, setting } => self.answer = Some((id, self.set(&setting, machine, host))),
@@ -297,7 +298,7 @@ impl Debugger {
         let can_go_on = match machine.state() {
             State::Ready => true,
             State::Pausing { until } => host.now() >= *until,
-            _ => false,
+            State::Listening { .. } | State::Ended | State::Faulted(_) => false,
         };
         if !self.moved || !can_go_on {
             return false;
@@ -359,7 +360,7 @@ impl Debugger {
             }
             State::Ended => self.reason = Reason::Ended,
             State::Faulted(fault) => self.reason = Reason::Faulted(fault.clone()),
-            _ => {
+            State::Pausing { .. } | State::Listening { .. } => {
                 let wait = waits(machine);
                 if self.mode == Mode::Stopping {
                     self.stand(Reason::Asked(wait));

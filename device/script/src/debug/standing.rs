@@ -18,11 +18,12 @@ pub fn waits(machine: &Machine) -> Option<Wait> {
             Some(if is_pause { Wait::Pause { until: *until } } else { Wait::Busy { until: *until } })
         }
         State::Listening { stream } => Some(Wait::Gets { stream: *stream }),
-        _ => None,
+        State::Ready | State::Ended | State::Faulted(_) => None,
     }
 }
 
 /// The line a script stands on. One that waits in PAUSE has that behind it already.
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 pub fn line_of(machine: &Machine, reason: &Reason) -> u32 {
     match reason {
         Reason::Waiting(Wait::Pause { .. } | Wait::Busy { .. })
@@ -37,6 +38,8 @@ pub fn reason_of(machine: &Machine, known: &Reason) -> Reason {
         _ if matches!(known, Reason::Stopped(_)) => known.clone(),
         State::Ended => Reason::Ended,
         State::Faulted(fault) => Reason::Faulted(fault.clone()),
-        _ => waits(machine).map_or(Reason::Running, Reason::Waiting),
+        State::Ready | State::Pausing { .. } | State::Listening { .. } => {
+            waits(machine).map_or(Reason::Running, Reason::Waiting)
+        }
     }
 }

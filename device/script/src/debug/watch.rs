@@ -53,6 +53,7 @@ impl Watch {
     ///
     /// # Errors
     /// As for [`Watch::value`].
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn holds<H: Host + ?Sized>(&self, machine: &mut Machine, host: &mut H) -> Result<bool, String> {
         let value = self.value(machine, host)?;
         Ok(value.cells.iter().any(|cell| match value.kind {
@@ -119,6 +120,8 @@ fn evaluate<H: Host + ?Sized>(
     std::mem::swap(scratch.memory_mut(), machine.memory_mut());
     match state {
         State::Faulted(fault) => Err(format!("It cannot be worked out now: {}.", fault.kind)),
-        _ => Ok(scratch.top().unwrap_or(0)),
+        State::Ready | State::Pausing { .. } | State::Listening { .. } | State::Ended => {
+            Ok(scratch.top().unwrap_or(0))
+        }
     }
 }

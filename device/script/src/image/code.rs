@@ -122,6 +122,7 @@ fn long(writer: &mut Writer, code: u8, operands: &[u32]) {
     operands.iter().for_each(|operand| writer.varint(*operand));
 }
 
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 pub fn write(writer: &mut Writer, op: Op) {
     match op {
         Op::Nop => writer.byte(NOP),
@@ -163,6 +164,7 @@ fn with_array(writer: &mut Writer, code: u8, array: Array) {
     write_array(writer, array);
 }
 
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 fn write_flow(writer: &mut Writer, op: Op) {
     match op {
         Op::Jump(to) => long(writer, JUMP, &[to]),
@@ -197,6 +199,7 @@ fn write_flow(writer: &mut Writer, op: Op) {
     }
 }
 
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 fn write_streams(writer: &mut Writer, op: Op) {
     match op {
         Op::OutStream => writer.byte(OUT_STREAM),

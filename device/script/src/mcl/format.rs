@@ -124,7 +124,9 @@ fn indented(pieces: &[(Kind, String)], depths: &[usize], end: &str) -> String {
         steps.push(match kind {
             Kind::Label | Kind::Directive | Kind::Empty => 0,
             Kind::Definition if *depth == 0 => 0,
-            _ => (depth + usize::from(under_label)).min(DEEPEST),
+            Kind::Comment | Kind::Definition | Kind::Statement => {
+                (depth + usize::from(under_label)).min(DEEPEST)
+            }
         });
     }
     let mut after = 0;
@@ -132,7 +134,7 @@ fn indented(pieces: &[(Kind, String)], depths: &[usize], end: &str) -> String {
         match kind {
             Kind::Comment => *steps = after,
             Kind::Empty => {}
-            _ => after = *steps,
+            Kind::Label | Kind::Directive | Kind::Definition | Kind::Statement => after = *steps,
         }
     }
     let mut page = String::new();
@@ -204,7 +206,7 @@ fn is_before_operand(text: &str, tokens: &[&Token], index: usize) -> bool {
                 || matches!(words::known(word), Some(Known::Register(_) | Known::Misspelt(_)));
             !is_value || VarType::lookup(word).is_some() || super::ast::Format::of_word(word).is_some()
         }
-        _ => true,
+        TokenKind::Directive(_) | TokenKind::Sign(_) | TokenKind::Newline | TokenKind::End => true,
     }
 }
 

@@ -54,7 +54,7 @@ impl Operator {
             Does::One(operator) if operator.is_float() => Takes::Floats,
             Does::One(Unary::Negative | Unary::Not | Unary::ToInt | Unary::ToFloat) => Takes::Both,
             Does::Two(operator) if crate::arithmetic::takes_floats(operator) => Takes::Both,
-            _ => Takes::Integers,
+            Does::One(_) | Does::Two(_) => Takes::Integers,
         }
     }
 

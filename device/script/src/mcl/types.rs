@@ -87,7 +87,7 @@ impl VarType {
         match self {
             Self::Float => None,
             Self::SByte | Self::SWord | Self::SLong => Some((-top / 2, top / 2 - 1)),
-            _ => Some((0, top - 1)),
+            Self::Bit | Self::Nib | Self::Byte | Self::Word | Self::Long => Some((0, top - 1)),
         }
     }
 

@@ -9,12 +9,13 @@ const MOST_ZEROS: u32 = 64;
 ///
 /// The manual shows HEX as "12ab" and as "0x12ab"; its text and IHEX agree with the former.
 #[must_use]
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 pub fn whole(format: Format, value: u32, max: u32, min: u32) -> String {
     let negative = format == Format::SDec && (value as i32) < 0;
     let mut digits = match format {
         Format::Hex | Format::IHex => format!("{value:x}"),
         Format::SDec => (value as i32).unsigned_abs().to_string(),
-        _ => value.to_string(),
+        Format::Dec | Format::Rep | Format::Real | Format::Str => value.to_string(),
     };
     let max = max as usize;
     if max > 0 && digits.len() > max {

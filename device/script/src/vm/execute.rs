@@ -15,6 +15,7 @@ type Done = Result<(), FaultKind>;
 
 impl Machine {
     #[inline]
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub(super) fn execute<H: Host + ?Sized>(&mut self, op: Op, program: &Program, host: &mut H) -> Done {
         match op {
             Op::Nop => {}
@@ -63,6 +64,7 @@ impl Machine {
         Ok(())
     }
 
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn execute_rest<H: Host + ?Sized>(&mut self, op: Op, program: &Program, host: &mut H) -> Done {
         match op {
             Op::LoadRegister(id, index) => self.push(register(host, id, index))?,
@@ -260,6 +262,7 @@ fn part_of(part: Part, value: u32) -> u32 {
     part.kind.keep(value.checked_shr(part.first_bit).unwrap_or(0))
 }
 
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 fn type_of(kind: VarType) -> Type {
     match kind {
         VarType::Float => Type::Float,

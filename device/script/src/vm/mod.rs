@@ -167,7 +167,7 @@ impl Machine {
     pub fn standing_line(&self) -> u32 {
         match self.state {
             State::Pausing { .. } => self.line_behind(),
-            _ => self.line(),
+            State::Ready | State::Listening { .. } | State::Ended | State::Faulted(_) => self.line(),
         }
     }
 

@@ -13,6 +13,7 @@ type Done = Result<(), FaultKind>;
 const BYTES_PER_STEP: usize = 256;
 
 impl Machine {
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub(super) fn stream<H: Host + ?Sized>(&mut self, op: Op, program: &Program, host: &mut H) -> Done {
         match op {
             Op::OutStream => self.sink = Sink::Stream(self.pop()?),

@@ -68,6 +68,7 @@ fn parsed(protocol: Protocol, command: &Command, bytes: &[u8]) -> Option<Reply> 
 }
 
 impl MindCarrier for MindLine {
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn transact(&mut self, command: &Command) -> Result<(Exchange, Reply), AxisError> {
         let protocol = self.line_protocol();
         let line = &mut self.line;

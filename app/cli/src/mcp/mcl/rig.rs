@@ -175,7 +175,7 @@ fn kind_of(port: StreamIndex, args: &RunArgs) -> Result<u8, String> {
     let (bus, stream, is_taken) = match port {
         StreamIndex::Uart0 => ("--can-peer", 3, args.buses.can_peer.is_some()),
         StreamIndex::Uart1 => ("--i2c", 2, !args.buses.i2c.is_empty()),
-        _ => return Ok(TYPE_MCL),
+        StreamIndex::Usb | StreamIndex::Uart2 | StreamIndex::Uart3 => return Ok(TYPE_MCL),
     };
     match is_taken {
         false => Ok(TYPE_MCL),

@@ -265,7 +265,7 @@ impl LiveGraph {
         let title = head.title.clone();
         Box::new(move || match what {
             Export::Png => png::png(&picture, whole, palette.panel).map_err(|error| error.to_string()),
-            _ => Ok(svg::svg(&picture, whole, palette.panel, &title).into_bytes()),
+            Export::Csv | Export::Svg => Ok(svg::svg(&picture, whole, palette.panel, &title).into_bytes()),
         })
     }
 }

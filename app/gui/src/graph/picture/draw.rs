@@ -420,7 +420,9 @@ pub fn flag(frame: &Frame, mark: &Mark) -> [Pos2; 3] {
     let (x, top) = (frame.x(mark.at_s), frame.plot.top());
     match mark.kind {
         MarkKind::Stop => [pos2(x, top), pos2(x - 5.0, top - 9.0), pos2(x + 5.0, top - 9.0)],
-        _ => [pos2(x, top), pos2(x, top - 10.0), pos2(x + 8.0, top - 6.0)],
+        MarkKind::Drive | MarkKind::Arm | MarkKind::Setting | MarkKind::Note => {
+            [pos2(x, top), pos2(x, top - 10.0), pos2(x + 8.0, top - 6.0)]
+        }
     }
 }
 

@@ -45,6 +45,7 @@ impl Family for Mcp {
         Screen::USUAL.to_vec()
     }
 
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn tabs(&self, screen: Screen) -> &'static [Tab] {
         match screen {
             Screen::Pwm => &[Tab::Settings, Tab::Generator, Tab::Qpps],
@@ -215,7 +216,7 @@ impl Family for Mcp {
             ArmScope::Pwm => sliders.pwm.to_send(),
             ArmScope::Velocity => sliders.velocity.to_send(),
             ArmScope::Position => sliders.position.to_send(),
-            _ => None,
+            ArmScope::ClampTest | ArmScope::Tuning | ArmScope::Script | ArmScope::CommandLine => None,
         }
     }
 
@@ -244,6 +245,7 @@ pub const HELP_COMMANDS: HelpPage =
 pub const HELP_MCL: HelpPage = HelpPage { title: "MCL Reference", group: 1, is_searched: true };
 
 /// An indicator as a unit's status lights it; those for home and limit switches of an MCP as its pins do.
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 fn lit(
     indicator: StatusIndicator,
     conditions: Conditions,

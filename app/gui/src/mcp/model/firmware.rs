@@ -201,7 +201,11 @@ impl Firmware {
     pub fn entering(&mut self, place: LoaderPlace) {
         self.stage = match std::mem::take(&mut self.stage) {
             Stage::BackingUp { image, .. } => Stage::Entering { image, place },
-            other => other,
+            other @ (Stage::Idle
+            | Stage::Entering { .. }
+            | Stage::Sending { .. }
+            | Stage::Done(_)
+            | Stage::Failed(_)) => other,
         };
     }
 
@@ -221,7 +225,11 @@ impl Firmware {
     fn entered(&mut self) {
         match std::mem::take(&mut self.stage) {
             Stage::Entering { image, place } => self.send(image, place),
-            other => self.stage = other,
+            other @ (Stage::Idle
+            | Stage::BackingUp { .. }
+            | Stage::Sending { .. }
+            | Stage::Done(_)
+            | Stage::Failed(_)) => self.stage = other,
         }
     }
 

@@ -68,7 +68,9 @@ fn contents_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
                 commands.push(Command::own(FirmwareAction::Dismiss));
             }
         }
-        running => running_ui(ui, running, commands),
+        running @ (Stage::BackingUp { .. } | Stage::Entering { .. } | Stage::Sending { .. }) => {
+            running_ui(ui, running, commands);
+        }
     }
 }
 

@@ -46,7 +46,7 @@ pub fn around_rows_ui(ui: &mut Ui, general: &mut GeneralView<'_>, is_before: boo
     match general.section {
         Section::Group(Group::Scripting) if is_before => autorun_ui(ui, general),
         Section::Group(Group::Unit) if !is_before => bridge_ui(ui, general.unit()),
-        _ => {}
+        Section::Group(_) | Section::One(..) | Section::Conflicts | Section::ClampTest => {}
     }
 }
 

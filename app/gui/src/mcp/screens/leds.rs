@@ -81,7 +81,7 @@ fn stat1(code: &BlinkCode) -> String {
         Light::Lit if code.err != Light::Lit || code.stat2 != Light::Lit => {
             "lit, going dark for a moment with each byte received".to_owned()
         }
-        light => light.words(),
+        light @ (Light::Dark | Light::Lit | Light::Flashes(_) | Light::TakesTurns { .. }) => light.words(),
     }
 }
 

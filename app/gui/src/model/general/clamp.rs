@@ -100,7 +100,10 @@ fn first_limit(unit: &UnitSettings) -> Option<f64> {
     let row = unit.table().row("limits.main_battery.max_volts")?;
     match unit.on_controller(&row.key)? {
         SettingValue::Number(volts) => Some((volts + ABOVE_MAXIMUM_VOLTS).min(row.range.max)),
-        _ => None,
+        SettingValue::Bool(_)
+        | SettingValue::Int(_)
+        | SettingValue::Choice(_)
+        | SettingValue::UnknownCode(_) => None,
     }
 }
 

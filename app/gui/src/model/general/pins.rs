@@ -11,7 +11,7 @@ impl General {
     pub fn pin(&self) -> Option<usize> {
         match self.section {
             Section::One(Group::Pins, number) if !self.is_filtered() => Some(number),
-            _ => None,
+            Section::Group(_) | Section::One(..) | Section::Conflicts | Section::ClampTest => None,
         }
     }
 

@@ -3,6 +3,7 @@
 use brushwork_link::settings::{Group, Row, SettingValue};
 
 /// Why the row has no effect now, as a sentence; `wanted` gives the value of any key.
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 pub(super) fn why_not(row: &Row, wanted: impl Fn(&str) -> Option<SettingValue>) -> Option<&'static str> {
     match row.group {
         Group::Pins => pin(row, wanted),
@@ -64,7 +65,10 @@ fn bus(row: &Row, wanted: impl Fn(&str) -> Option<SettingValue>) -> Option<&'sta
 fn choice(value: Option<SettingValue>) -> Option<&'static str> {
     match value? {
         SettingValue::Choice(key) => Some(key),
-        _ => None,
+        SettingValue::Bool(_)
+        | SettingValue::Int(_)
+        | SettingValue::Number(_)
+        | SettingValue::UnknownCode(_) => None,
     }
 }
 

@@ -54,7 +54,7 @@ impl Came {
             Done::Reloaded(report) => Self::Reloaded(report.image.clone()),
             Done::Written(report, _) if report.is_complete() => Self::Written,
             Done::Saved(report) => Self::Saved { verified: report.verdict == SaveVerdict::Verified },
-            _ => Self::Other,
+            Done::Written(..) | Done::NotWritten(_) | Done::Restored(_) => Self::Other,
         }
     }
 }

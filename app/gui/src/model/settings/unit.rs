@@ -528,7 +528,7 @@ impl UnitSettings {
         let number = number.clamp(row.range.min, row.range.max);
         let value = match row.kind {
             Kind::Int => SettingValue::Int(number.round() as i64),
-            _ => row.settle(SettingValue::Number(number)),
+            Kind::Bool | Kind::Fixed { .. } | Kind::Choice(_) => row.settle(SettingValue::Number(number)),
         };
         self.set(key, value);
     }

@@ -222,6 +222,7 @@ impl Settings {
     }
 
     /// Takes in an event of work that was begun here.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn take(&mut self, event: Event) -> Option<Ended> {
         let id = event.job()?;
         let place = self.jobs.iter().position(|job| job.ticket.id() == id)?;
@@ -287,7 +288,7 @@ impl Settings {
         match &job.origin {
             Origin::View(keys) => unit.forget_keys_asked(keys),
             Origin::Settings(SettingsAction::Read) if job.is_quiet => unit.forget_asked(),
-            _ => {}
+            Origin::Settings(_) | Origin::Loop => {}
         }
     }
 

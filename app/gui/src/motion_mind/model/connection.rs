@@ -71,7 +71,10 @@ impl Connection {
     fn setting(&self, register: &Register) -> Option<i64> {
         match self.settings.unit()?.confirmed(&key(register))? {
             SettingValue::Int(value) => Some(value),
-            _ => None,
+            SettingValue::Bool(_)
+            | SettingValue::Number(_)
+            | SettingValue::Choice(_)
+            | SettingValue::UnknownCode(_) => None,
         }
     }
 

@@ -56,7 +56,7 @@ pub fn to_send(scope: ArmScope, setpoints: Setpoints) -> Option<Drive> {
                 decel_counts_per_s2: 0,
                 queued: false,
             },
-            _ => return None,
+            ArmScope::ClampTest | ArmScope::Tuning | ArmScope::Script | ArmScope::CommandLine => return None,
         })
     })
 }

@@ -53,10 +53,11 @@ impl Family for MotionMind {
             Screen::Position => "Position",
             Screen::Inputs => "Inputs and R/C",
             Screen::Terminal => "Terminal",
-            other => other.title(),
+            other @ (Screen::DeviceStatus | Screen::MclEditor | Screen::Motion) => other.title(),
         }
     }
 
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn tabs(&self, screen: Screen) -> &'static [Tab] {
         match screen {
             Screen::Velocity => &[Tab::Tune],
@@ -169,7 +170,7 @@ impl Family for MotionMind {
             ArmScope::Pwm => sliders.pwm.setpoints,
             ArmScope::Velocity => sliders.velocity.setpoints,
             ArmScope::Position => sliders.position.setpoints,
-            _ => return None,
+            ArmScope::ClampTest | ArmScope::Tuning | ArmScope::Script | ArmScope::CommandLine => return None,
         };
         to_send(scope, setpoints)
     }
@@ -182,6 +183,7 @@ impl Family for MotionMind {
         CHANNELS
     }
 
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn first_channels(&self, screen: Screen) -> &'static [Channel] {
         use Channel as C;
         match screen {

@@ -60,7 +60,7 @@ impl Radio {
         match self.stage {
             Stage::Forward => self.forward,
             Stage::Backward => self.backward,
-            _ => None,
+            Stage::Idle | Stage::Middle | Stage::Done => None,
         }
     }
 

@@ -83,6 +83,7 @@ impl Understood {
     }
 
     /// As a line of text, where it has that form.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn line(&self) -> Option<String> {
         let command = match self.command {
             Command::ReadRegister(number) => Command::ReadText(Part::Register(number)),
@@ -92,6 +93,7 @@ impl Understood {
     }
 
     /// As bytes, where it has that form.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn bytes(&self) -> Option<String> {
         let command = match self.command {
             Command::ReadText(Part::Register(number)) => Command::ReadRegister(number),
@@ -119,6 +121,7 @@ impl Understood {
     }
 
     /// What should be known before it is sent.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn care(&self) -> Option<&'static str> {
         match self.command {
             Command::Write { .. } => Some("This changes a register in RAM. A backup is made first."),
@@ -136,6 +139,7 @@ impl Understood {
     }
 
     /// The command's byte and its values, where it changes registers: those are backed up first.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn request(&self) -> Option<(u8, Vec<i64>)> {
         Some(match self.command {
             Command::Write { register, value } => (0x18, vec![register.into(), value]),
@@ -381,7 +385,9 @@ fn reported(values: &Values) -> String {
     }
     let each = values.iter().map(|(field, value)| match value {
         Value::Int(value) => format!("{} {value}", field.name),
-        other => format!("{} {other:?}", field.name),
+        other @ (Value::Text(_) | Value::Bytes(_) | Value::Records(_)) => {
+            format!("{} {other:?}", field.name)
+        }
     });
     each.collect::<Vec<_>>().join(", ")
 }

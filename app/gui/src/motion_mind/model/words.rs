@@ -25,6 +25,7 @@ pub(super) static WORDS: SettingsWords = SettingsWords {
 };
 
 /// What to do about a refused tuning run, where it is another thing, or in another place, than with an MCP.
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 pub(super) fn remedies(cause: Cause) -> Option<&'static [&'static str]> {
     Some(match cause {
         Cause::EncoderReversed => &[

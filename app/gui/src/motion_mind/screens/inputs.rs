@@ -185,7 +185,7 @@ fn stage_ui(ui: &mut Ui, model: &mut Model, count: Option<i64>, is_position: boo
                 model.front.mind_mut().radio.start();
             }
         }
-        _ => {
+        Stage::Middle | Stage::Forward | Stage::Backward => {
             if ui.add(Button::new(button_text(stage))).clicked() {
                 reported = model.front.mind_mut().radio.go_on(count).err();
             }
@@ -216,6 +216,6 @@ const fn button_text(stage: Stage) -> &'static str {
     match stage {
         Stage::Middle => "The stick is in the middle",
         Stage::Forward => "It was fully forward",
-        _ => "It was fully back",
+        Stage::Idle | Stage::Backward | Stage::Done => "It was fully back",
     }
 }

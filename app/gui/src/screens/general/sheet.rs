@@ -36,6 +36,7 @@ pub fn sheet_ui(
     buttons_ui(ui, general, &offers.inner, commands);
 }
 
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 fn content_ui(
     ui: &mut Ui,
     general: &mut GeneralView<'_>,
@@ -52,7 +53,7 @@ fn content_ui(
         Sheet::CopyMotor => return kept::copy_motor_ui(ui, general),
         Sheet::Unfinished => return kept::unfinished_ui(ui, general),
         Sheet::Save => return save_ui(ui, general, words),
-        _ => {}
+        Sheet::Read | Sheet::Write | Sheet::Defaults | Sheet::Report { .. } => {}
     }
     let Some(unit) = general.unit() else { return Vec::new() };
     match sheet {

@@ -114,7 +114,10 @@ impl Listener {
             }
             match transfer.take(frame.bytes()) {
                 Progress::Passed => {}
-                progress => {
+                progress @ (Progress::Send(_)
+                | Progress::Done(_)
+                | Progress::Refused(_)
+                | Progress::GiveUp { .. }) => {
                     *answer = Some(progress);
                     return Judgement::Good(self.heard);
                 }

@@ -114,7 +114,7 @@ fn travel(command: &DriveCommand) -> [i64; 2] {
         DriveCommand::Distance { speed_counts_per_s, distance_counts, .. } => {
             [speed_counts_per_s.into(), distance_counts.into()]
         }
-        _ => [0, 0],
+        DriveCommand::Duty { .. } | DriveCommand::Speed { .. } | DriveCommand::Position { .. } => [0, 0],
     }
 }
 
@@ -133,7 +133,7 @@ fn profile(command: &DriveCommand) -> [i64; 4] {
             decel_counts_per_s2.into(),
             position_counts.into(),
         ],
-        _ => [0; 4],
+        DriveCommand::Duty { .. } | DriveCommand::Speed { .. } | DriveCommand::Distance { .. } => [0; 4],
     }
 }
 

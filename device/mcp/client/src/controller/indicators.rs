@@ -46,6 +46,7 @@ pub fn conditions(report: &StatusReport) -> Conditions {
 /// The thirteen places of the status row. Where the word has no bits for home and limit switches, their places go by what the
 /// pins say, if that is known.
 #[must_use]
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 pub fn status_row(
     report: Option<&StatusReport>,
     generation: Generation,

@@ -204,7 +204,10 @@ fn ask_surely<const L: u8>(
     let reads: Vec<_> = reads.iter().map(|read| Request::new(speaker.address, *read, &[])).collect();
     let end_of = |read: usize, bytes: &[u8]| match parse_reply(reads.get(read)?, speaker.generation, bytes) {
         ReplyProgress::Done { used, .. } => Some(used),
-        _ => None,
+        ReplyProgress::NeedMore { .. }
+        | ReplyProgress::BadCrc { .. }
+        | ReplyProgress::BadAck { .. }
+        | ReplyProgress::Malformed { .. } => None,
     };
     let encoded = reads.iter().map(|read| read.encode(speaker.generation).unwrap_or_default()).collect();
     let bracketed = Bracketed { request: &bytes, acknowledgement: ACK, reads: encoded, end_of: &end_of };

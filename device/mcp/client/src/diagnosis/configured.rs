@@ -95,7 +95,11 @@ fn script(settings: &SettingsImage, evidence: &Evidence<'_>) -> Option<Finding> 
             ),
             "Press Stop All, which ends it, or set the script autorun delay to 0",
         )),
-        _ => None,
+        SettingValue::Bool(_)
+        | SettingValue::Int(_)
+        | SettingValue::Number(_)
+        | SettingValue::Choice(_)
+        | SettingValue::UnknownCode(_) => None,
     }
 }
 
@@ -175,6 +179,9 @@ fn named(motors: &[u8]) -> Option<String> {
 fn whole(settings: &SettingsImage, motor: u8, what: &str) -> Option<i64> {
     match settings.get(&format!("motor{motor}.{what}"))? {
         SettingValue::Int(value) => Some(value),
-        _ => None,
+        SettingValue::Bool(_)
+        | SettingValue::Number(_)
+        | SettingValue::Choice(_)
+        | SettingValue::UnknownCode(_) => None,
     }
 }

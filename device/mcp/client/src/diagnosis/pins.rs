@@ -163,14 +163,20 @@ fn is_used(settings: &SettingsImage, pin: usize) -> bool {
 fn choice(settings: &SettingsImage, pin: usize, what: &str) -> Option<&'static str> {
     match settings.get(&key(pin, what))? {
         SettingValue::Choice(key) => Some(key),
-        _ => None,
+        SettingValue::Bool(_)
+        | SettingValue::Int(_)
+        | SettingValue::Number(_)
+        | SettingValue::UnknownCode(_) => None,
     }
 }
 
 fn int(settings: &SettingsImage, pin: usize, what: &str) -> Option<i64> {
     match settings.get(&key(pin, what))? {
         SettingValue::Int(number) => Some(number),
-        _ => None,
+        SettingValue::Bool(_)
+        | SettingValue::Number(_)
+        | SettingValue::Choice(_)
+        | SettingValue::UnknownCode(_) => None,
     }
 }
 

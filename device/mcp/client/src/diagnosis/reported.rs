@@ -82,7 +82,7 @@ fn temperature(indicator: &Indicator, evidence: &Evidence<'_>) -> Finding {
     };
     match indicator.severity {
         Severity::Error => finding(BlocksAll, at, "Let the board cool below 100 °C"),
-        _ => finding(
+        Severity::Signal | Severity::Warning => finding(
             Limits,
             format!("{at}, so its current limit is reduced"),
             "Let the board cool below 85 °C",
@@ -105,7 +105,10 @@ fn battery(indicator: &Indicator, evidence: &Evidence<'_>) -> Finding {
     let limit =
         evidence.settings.and_then(|settings| match settings.get(&format!("limits.{key}.{end}"))? {
             SettingValue::Number(limit) => Some(limit),
-            _ => None,
+            SettingValue::Bool(_)
+            | SettingValue::Int(_)
+            | SettingValue::Choice(_)
+            | SettingValue::UnknownCode(_) => None,
         });
     let which = if is_high { "above its maximum" } else { "below its minimum" };
     let exceeded = |volts: f64, limit: f64| if is_high { volts > limit } else { volts < limit };

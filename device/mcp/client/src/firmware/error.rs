@@ -97,7 +97,9 @@ impl SendError {
     pub fn failure(&self, on: impl Into<String>) -> Failure {
         let came_back = match self {
             Self::Line { source, .. } => format!("{self}: {}", source.full()),
-            _ => self.to_string(),
+            Self::Cancelled | Self::NoGreeting { .. } | Self::PageLost { .. } | Self::PageRefused { .. } => {
+                self.to_string()
+            }
         };
         Failure::new("send the firmware", on, came_back, self.left().remedy())
     }

@@ -46,7 +46,11 @@ pub(super) fn dangers(table: &SettingsTable, after: &SettingsImage, changes: &Se
 fn bridging(changes: &SettingsImage) -> Option<&'static str> {
     match changes.get(BRIDGE_CHANNELS)? {
         SettingValue::Bool(true) => Some(BRIDGE_WARNING),
-        _ => Some(
+        SettingValue::Bool(_)
+        | SettingValue::Int(_)
+        | SettingValue::Number(_)
+        | SettingValue::Choice(_)
+        | SettingValue::UnknownCode(_) => Some(
             "The channels are separate again: take the single motor off both of them before this is written, or the \
              controller is damaged. MCP manual 1.8.",
         ),

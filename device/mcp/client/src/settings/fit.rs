@@ -65,7 +65,11 @@ pub fn impossible_type(fit: &Fit<'_>, there: &Row, value: SettingValue) -> Optio
         SettingValue::Choice("analog") => pin.is_analog(),
         SettingValue::Choice("pulse") => pin.is_pulse(),
         SettingValue::Choice("encoder") => channel(pin).is_some(),
-        _ => true,
+        SettingValue::Bool(_)
+        | SettingValue::Int(_)
+        | SettingValue::Number(_)
+        | SettingValue::Choice(_)
+        | SettingValue::UnknownCode(_) => true,
     };
     (!is_possible).then(|| {
         format!(

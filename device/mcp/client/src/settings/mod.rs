@@ -47,7 +47,11 @@ impl FamilySettings for McpSettings {
     fn note(&self, table: &SettingsTable, row: &Row, value: SettingValue) -> Option<String> {
         let number = match value {
             SettingValue::Int(number) if row.pattern == ENCODER_PIN => number,
-            _ => return None,
+            SettingValue::Bool(_)
+            | SettingValue::Int(_)
+            | SettingValue::Number(_)
+            | SettingValue::Choice(_)
+            | SettingValue::UnknownCode(_) => return None,
         };
         if number == ENCODER_PIN_NONE {
             return Some("none, assumed".to_owned());

@@ -67,7 +67,10 @@ pub fn warnings(context: &PlanContext<'_>, steps: &[Step]) -> Vec<String> {
                  address, so check it first.",
                 context.ram.get("unit.address").map_or_else(String::new, |address| match address {
                     SettingValue::Int(byte) => format!("0x{byte:02X}"),
-                    _ => String::new(),
+                    SettingValue::Bool(_)
+                    | SettingValue::Number(_)
+                    | SettingValue::Choice(_)
+                    | SettingValue::UnknownCode(_) => String::new(),
                 })
             )),
             (number::SET_STREAM, Stage::OwnPort) => warnings.extend(own_port_warnings(context)),

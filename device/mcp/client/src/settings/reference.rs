@@ -94,7 +94,7 @@ fn reference_row(template: &'static Template) -> Option<ReferenceRow> {
     let other = example_row(template, other_model(template), newest)?;
     let choices = match row.kind {
         Kind::Choice(codes) => codes.iter().map(|code| code.key).collect(),
-        _ => Vec::new(),
+        Kind::Bool | Kind::Int | Kind::Fixed { .. } => Vec::new(),
     };
     Some(ReferenceRow {
         key: template.key,

@@ -40,7 +40,7 @@ impl Flash {
         *self = match std::mem::take(self) {
             Self::Erasing { until } if now < until => Self::Dead,
             Self::Erasing { .. } | Self::Filling(_) => Self::Filling(Vec::new()),
-            kept => kept,
+            kept @ (Self::Factory | Self::Image(_) | Self::Dead) => kept,
         };
     }
 
@@ -53,7 +53,7 @@ impl Flash {
     pub fn installed(&self) -> Option<SimulatedImage> {
         match self {
             Self::Image(bytes) => SimulatedImage::read(bytes),
-            _ => None,
+            Self::Factory | Self::Erasing { .. } | Self::Filling(_) | Self::Dead => None,
         }
     }
 }

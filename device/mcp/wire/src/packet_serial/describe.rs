@@ -94,6 +94,7 @@ fn sentence(address: Address, command: &Command, values: &Values, generation: Ge
     format!("{address} {title}: {}", describe_values(values, generation))
 }
 
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 fn describe_int(field: &Field, raw: i64, generation: Generation) -> String {
     if let Some(code) = brushwork_values::by_raw(field.codes, raw) {
         return code.label.to_owned();

@@ -207,6 +207,7 @@ impl FormEntry {
 }
 
 impl FieldEntry {
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn of(field: &Field) -> Self {
         let record = match field.kind {
             Kind::Counted(fields) => fields.iter().map(Self::of).collect(),

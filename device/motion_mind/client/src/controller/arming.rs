@@ -78,7 +78,11 @@ fn objections(unit: &MotionMind, mode: i64, function: i64, status: i64) -> Vec<(
             "in mode 5 its setpoint is the analog input".to_owned(),
             "Set ADSERIAL in FUNCTION, so that the setpoint comes over the serial line",
         )),
-        other => found.push((
+        other @ (Mode::RadioControl
+        | Mode::Analog
+        | Mode::Buttons
+        | Mode::FactoryRestore
+        | Mode::FactoryTest) => found.push((
             format!("in {other} it takes {}", driving::taken(other)),
             "Set switches 2 to 4 for mode 3 or 4, and switch the power off and on",
         )),

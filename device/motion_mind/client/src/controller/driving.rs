@@ -52,7 +52,9 @@ pub fn taken(mode: Mode) -> &'static str {
         Mode::Serial => "duties and nothing else",
         Mode::SerialPid => "speeds and moves; duties take mode 3",
         Mode::AnalogPid => "moves and nothing else",
-        _ => "no motion commands; modes 3, 4 and 5 do, by switches 2 to 4 at power-up",
+        Mode::RadioControl | Mode::Analog | Mode::Buttons | Mode::FactoryRestore | Mode::FactoryTest => {
+            "no motion commands; modes 3, 4 and 5 do, by switches 2 to 4 at power-up"
+        }
     }
 }
 

@@ -110,7 +110,7 @@ fn gate(line: &Line<'_>, typed: &Typed) -> Result<(), ExchangeError> {
             command: "these bytes".to_owned(),
             why: "they are no command of the manual".to_owned(),
         }),
-        _ => Ok(()),
+        Typed::Command(..) | Typed::BadLine | Typed::Unknown => Ok(()),
     }
 }
 
@@ -130,7 +130,7 @@ fn judge(protocol: Protocol, typed: &Typed, bytes: &[u8]) -> Judgement {
             match known {
                 Progress::Done { used, .. } => Judgement::Good(used),
                 _ if bytes.ends_with(b"\n") && command.takes_returns() => Judgement::Good(bytes.len()),
-                _ => Judgement::More(1),
+                Progress::Incomplete | Progress::Bad(_) => Judgement::More(1),
             }
         }
         (Protocol::Text, Typed::BadLine) if bytes.ends_with(b"\n") => Judgement::Good(bytes.len()),

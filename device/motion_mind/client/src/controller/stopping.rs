@@ -46,7 +46,7 @@ fn commands(mode: Mode) -> Option<Command> {
         Mode::Serial => Some(Command::ChangeSpeed(0)),
         Mode::SerialPid => Some(Command::MoveAtVelocity(0)),
         Mode::AnalogPid => Some(Command::MoveToRelative(0)),
-        _ => None,
+        Mode::RadioControl | Mode::Analog | Mode::Buttons | Mode::FactoryRestore | Mode::FactoryTest => None,
     }
 }
 
@@ -325,7 +325,7 @@ pub fn other_drivers(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<Vec<S
         Mode::SerialPid | Mode::AnalogPid if !is_off => {
             Some("Its loop holds the motor where it stands, and turns it back if it is pushed.")
         }
-        _ => None,
+        Mode::Serial | Mode::SerialPid | Mode::AnalogPid | Mode::FactoryRestore | Mode::FactoryTest => None,
     };
     Ok(reported.map(str::to_owned).into_iter().collect())
 }

@@ -32,7 +32,7 @@ pub fn describe_received(sent: &[u8], reply: &[u8], protocol: Protocol) -> Descr
     let known = all_returns().into_iter();
     let mut whole = known.map(parse).filter_map(|progress| match progress {
         Progress::Done { reply: said, used } if used == reply.len() => Some(said),
-        _ => None,
+        Progress::Incomplete | Progress::Done { .. } | Progress::Bad(_) => None,
     });
     match whole.next() {
         Some(said) => Described { text: describe_reply(&said), sound: true },

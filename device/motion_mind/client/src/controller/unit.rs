@@ -37,6 +37,7 @@ impl MotionMind {
     }
 
     /// What a command that was carried out changes in what is known of the unit.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub(super) fn note(&mut self, command: &Command) {
         match *command {
             Command::Write { register, value } | Command::WriteStore { register, value } => {

@@ -44,6 +44,7 @@ pub struct Fold {
 }
 
 /// The blocks of a program, by the place of their first word.
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 pub fn blocks(text: &str, tokens: &[Token]) -> Vec<Block> {
     let heads = while_heads(text, tokens);
     let mut finder = Finder::default();

@@ -71,6 +71,7 @@ impl Lowering<'_> {
         }
     }
 
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn unary(&mut self, operator: Unary, operand: &Expr, span: Span) -> Value {
         let Value { kind: from, known } = self.value(operand);
         if let Some(known) = known {
@@ -213,7 +214,7 @@ impl Lowering<'_> {
                 self.use_constants(first);
                 links.iter().for_each(|link| self.use_constants(&link.right));
             }
-            _ => {}
+            ExprKind::Integer(_) | ExprKind::Float(_) | ExprKind::Text(_) => {}
         }
     }
 
@@ -223,7 +224,7 @@ impl Lowering<'_> {
         let (first, links) = match &expr.kind {
             ExprKind::Unary(_, inner) | ExprKind::Group(inner) => return self.warn_of_precedence(inner),
             ExprKind::Chain(first, links) => (first, links),
-            _ => return,
+            ExprKind::Integer(_) | ExprKind::Float(_) | ExprKind::Text(_) | ExprKind::Place(_) => return,
         };
         let sides = || std::iter::once(&**first).chain(links.iter().map(|link| &link.right));
         if expr.kind.order() == Some(MASKS) {

@@ -129,6 +129,7 @@ impl Lowering<'_> {
     }
 
     /// The variable of a FOR, which has to be one at a known place.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn counter(&mut self, variable: &Place) -> Cell {
         let nowhere = Cell { kind: VarType::Long, at: 0 };
         let target = if self.register_of(variable).is_some() { None } else { self.settable(variable) };
@@ -210,7 +211,11 @@ impl Lowering<'_> {
         }
         match self.scope.get(&place.name.key)?.meaning.as_ref()? {
             Meaning::Register { id, .. } => Some(*id),
-            _ => None,
+            Meaning::Memory { .. }
+            | Meaning::Constant(_)
+            | Meaning::Table(_)
+            | Meaning::Label { .. }
+            | Meaning::Broken => None,
         }
     }
 
@@ -221,7 +226,9 @@ impl Lowering<'_> {
             (None, entry) => match entry?.meaning.as_ref()? {
                 Meaning::Memory { memory, .. } => memory.first.kind,
                 Meaning::Register { id, part, .. } => part.map_or(id.row().kind, |part| part.kind),
-                _ => return None,
+                Meaning::Constant(_) | Meaning::Table(_) | Meaning::Label { .. } | Meaning::Broken => {
+                    return None;
+                }
             },
         };
         let part = place.modifier.as_ref().map(|modifier| modifier.span.of(self.text));

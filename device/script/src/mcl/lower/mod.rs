@@ -260,6 +260,7 @@ impl<'a> Lowering<'a> {
         }
     }
 
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn retarget(&mut self, op: usize, to: u32) {
         if let Some(op) = self.ops.get_mut(op) {
             *op = match *op {

@@ -78,6 +78,7 @@ impl Lowering<'_> {
     }
 
     /// The memory of an array that is named without an index.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn whole_array(&mut self, place: &Place) -> Option<Array> {
         if place.index.is_some() || place.modifier.is_some() {
             return None;

@@ -355,7 +355,7 @@ impl Lowering<'_> {
                 self.report(codes::NOT_A_VARIABLE, place.span, message, hint);
                 return None;
             }
-            _ => {
+            Target::Cell { .. } | Target::Element { .. } | Target::Whole { .. } | Target::Register { .. } => {
                 self.mark_written(&target);
                 return Some(target);
             }
@@ -377,7 +377,9 @@ impl Lowering<'_> {
             Target::Cell { root, .. } | Target::Element { root, .. } | Target::Whole { root, .. } => {
                 Some(root)
             }
-            _ => None,
+            Target::Register { .. } | Target::Table { .. } | Target::WholeTable(_) | Target::Constant(_) => {
+                None
+            }
         }
     }
 

@@ -89,6 +89,7 @@ pub struct Scope {
 
 impl Scope {
     /// Notes every definition, wherever it stands.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn collect(&mut self, statements: &[Statement], diagnostics: &mut Diagnostics) {
         for statement in statements {
             match &statement.kind {
@@ -172,7 +173,7 @@ impl Scope {
                 entry.symbol.value = Some(table.kind);
                 entry.symbol.length = Some(table.length);
             }
-            _ => {}
+            Meaning::Constant(_) | Meaning::Label { .. } | Meaning::Broken => {}
         }
         entry.meaning = Some(meaning);
     }
@@ -196,14 +197,22 @@ impl Scope {
     pub fn constant(&self, key: &str) -> Option<Constant> {
         match self.entries.get(key)?.meaning.as_ref()? {
             Meaning::Constant(constant) => Some(*constant),
-            _ => None,
+            Meaning::Memory { .. }
+            | Meaning::Register { .. }
+            | Meaning::Table(_)
+            | Meaning::Label { .. }
+            | Meaning::Broken => None,
         }
     }
 
     pub fn label_at(&self, key: &str) -> Option<u32> {
         match self.entries.get(key)?.meaning.as_ref()? {
             Meaning::Label { at, .. } => *at,
-            _ => None,
+            Meaning::Memory { .. }
+            | Meaning::Constant(_)
+            | Meaning::Register { .. }
+            | Meaning::Table(_)
+            | Meaning::Broken => None,
         }
     }
 
@@ -217,6 +226,7 @@ impl Scope {
     }
 
     /// The type that a subroutine's argument is stored as.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn argument_type(&self, key: &str, index: usize) -> Option<Type> {
         match self.entries.get(key)?.meaning.as_ref()? {
             Meaning::Label { arguments: Some(arguments), .. } => arguments.get(index).copied(),
@@ -266,6 +276,7 @@ impl Scope {
 }
 
 /// How values of a type are reckoned with.
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 pub fn type_of(kind: VarType) -> Type {
     match kind {
         VarType::Float => Type::Float,
@@ -279,6 +290,10 @@ pub fn text_of(expr: &Expr) -> Option<&[u8]> {
     match &expr.kind {
         super::super::ast::ExprKind::Text(bytes) => Some(bytes),
         super::super::ast::ExprKind::Group(inner) => text_of(inner),
-        _ => None,
+        super::super::ast::ExprKind::Integer(_)
+        | super::super::ast::ExprKind::Float(_)
+        | super::super::ast::ExprKind::Place(_)
+        | super::super::ast::ExprKind::Unary(..)
+        | super::super::ast::ExprKind::Chain(..) => None,
     }
 }

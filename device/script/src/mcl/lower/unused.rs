@@ -21,7 +21,11 @@ impl Lowering<'_> {
                 SymbolKind::Label if entry.symbol.uses.is_empty() => {
                     (codes::UNUSED_LABEL, format!("Nothing jumps to `{name}`."))
                 }
-                _ => continue,
+                SymbolKind::Variable
+                | SymbolKind::Alias
+                | SymbolKind::Constant
+                | SymbolKind::Table
+                | SymbolKind::Label => continue,
             };
             found.push((code, entry.symbol.defined, message));
         }

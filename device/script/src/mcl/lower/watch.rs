@@ -41,6 +41,7 @@ impl Names {
     ///
     /// # Errors
     /// A sentence: what is wrong with it.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn watch(&mut self, text: &str) -> Result<Watch, String> {
         self.lower(&format!("write 0,{}\n", one_line(text)?), |lowering, parsed| {
             let Some(StatementKind::Write { value, .. }) = first(parsed) else {

@@ -26,6 +26,7 @@ impl Parser<'_> {
         }
     }
 
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn operator(&self) -> Option<Binary> {
         match self.kind() {
             TokenKind::Sign(sign) => Binary::of_sign(sign),
@@ -54,6 +55,7 @@ impl Parser<'_> {
         Ok(operators.into_iter().rev().fold(operand?, around))
     }
 
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn unary_operator(&self) -> Option<Unary> {
         match self.kind() {
             TokenKind::Sign("-") => Some(Unary::Negative),
@@ -80,7 +82,7 @@ impl Parser<'_> {
                 let place = self.place("A value")?;
                 return Ok(Expr { span: place.span, kind: ExprKind::Place(place) });
             }
-            _ => {
+            TokenKind::Directive(_) | TokenKind::Sign(_) | TokenKind::Newline | TokenKind::End => {
                 let found = self.found_here();
                 return self.fail(
                     codes::UNEXPECTED,

@@ -177,6 +177,7 @@ impl<'a> Parser<'a> {
         self.skip_line();
     }
 
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn skip_newlines(&mut self) {
         loop {
             match self.kind() {
@@ -313,6 +314,7 @@ impl<'a> Parser<'a> {
     }
 
     /// What stands here, for messages.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn found_here(&self) -> String {
         match self.kind() {
             TokenKind::Newline => "the end of the line".to_owned(),

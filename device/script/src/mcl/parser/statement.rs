@@ -106,7 +106,11 @@ impl Parser<'_> {
                 self.label()
             }
             TokenKind::Word if self.is_label_before_statement() => self.label(),
-            _ => {
+            TokenKind::Word
+            | TokenKind::Integer(_)
+            | TokenKind::Float(_)
+            | TokenKind::Text(_)
+            | TokenKind::Sign(_) => {
                 let commands = words::COMMANDS.iter().map(|command| command.name);
                 let hint = self.did_you_mean(word, commands);
                 self.fail(codes::UNKNOWN_COMMAND, format!("`{}` is no command.", excerpt(word)), hint)

@@ -8,6 +8,7 @@ use brushwork_link::settings::SettingValue;
 use brushwork_link::settings::SettingsTable;
 
 /// The current function of number `number` (from 1) of a group of ports, pins or outputs; `None` while it is not known.
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 pub fn function_text(table: &SettingsTable, get: Lookup<'_>, group: Group, number: usize) -> Option<String> {
     match group {
         Group::Pins => pin(table, get, number),

@@ -59,7 +59,7 @@ impl PinMode {
         match self {
             Self::Pulse => "µs",
             Self::Encoder => "counts",
-            _ => "",
+            Self::None | Self::Digital | Self::Analog | Self::PacketSerial => "",
         }
     }
 

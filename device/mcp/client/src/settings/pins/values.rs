@@ -33,7 +33,7 @@ impl<'a> PinValues<'a> {
         match (self.get)(&self.key(field))? {
             SettingValue::Int(number) => Some(number as f64),
             SettingValue::Number(number) => Some(number),
-            _ => None,
+            SettingValue::Bool(_) | SettingValue::Choice(_) | SettingValue::UnknownCode(_) => None,
         }
     }
 }
@@ -42,6 +42,9 @@ impl<'a> PinValues<'a> {
 pub(super) fn choice(get: Lookup<'_>, key: &str) -> Option<&'static str> {
     match get(key)? {
         SettingValue::Choice(choice) => Some(choice),
-        _ => None,
+        SettingValue::Bool(_)
+        | SettingValue::Int(_)
+        | SettingValue::Number(_)
+        | SettingValue::UnknownCode(_) => None,
     }
 }

@@ -209,7 +209,7 @@ impl Objects<'_> {
         let values = self.values(command)?;
         let text = values.into_iter().find_map(|(_, value)| match value {
             Value::Text(text) => Some(text),
-            _ => None,
+            Value::Int(_) | Value::Bytes(_) | Value::Records(_) => None,
         });
         Ok(text.ok_or(Abort::NO_DATA)?.into_bytes())
     }
@@ -218,7 +218,7 @@ impl Objects<'_> {
         let values = self.values(command)?;
         let records = values.into_iter().find_map(|(_, value)| match value {
             Value::Records(records) => Some(records),
-            _ => None,
+            Value::Int(_) | Value::Text(_) | Value::Bytes(_) => None,
         });
         let records = records.ok_or(Abort::NO_DATA)?;
         match subindex {

@@ -52,7 +52,9 @@ fn power<const L: u8>(args: &Arguments<'_, L>) -> u8 {
 fn drive<const L: u8>(unit: &mut Firmware, motor: Motor, duty_raw: i16) -> Answer<L> {
     match unit.drive(motor, MotionCommand::Duty { duty_raw, acceleration_raw: None }) {
         Answer::Ack => unit.legacy_ack(),
-        refused => refused,
+        refused @ (Answer::Data(_) | Answer::AckThenStatus { .. } | Answer::Refused | Answer::Silence) => {
+            refused
+        }
     }
 }
 

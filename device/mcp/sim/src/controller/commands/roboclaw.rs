@@ -112,7 +112,9 @@ fn control_settings<const L: u8>(unit: &Firmware) -> Answer<L> {
     let [s1, s2] = &unit.settings.roboclaw.inputs;
     let range = |input: &ControlInput| match unit.generation {
         Generation::Gen4 => [input.min.into(), input.max.into()],
-        _ => [input.reverse_deadband.into(), input.forward_deadband.into()],
+        Generation::Gen1 | Generation::Gen2 | Generation::Gen3 => {
+            [input.reverse_deadband.into(), input.forward_deadband.into()]
+        }
     };
     let ([s1_min, s1_max], [s2_min, s2_max]) = (range(s1), range(s2));
     Answer::of([

@@ -74,7 +74,11 @@ impl Controller {
             State::Listening { stream } if !self.debugger.is_paused() && self.debugger.has_given(*stream) => {
                 Some(up_for.max(firmware.script.clock))
             }
-            _ => None,
+            State::Ready
+            | State::Pausing { .. }
+            | State::Listening { .. }
+            | State::Ended
+            | State::Faulted(_) => None,
         }
     }
 

@@ -130,7 +130,7 @@ impl ScriptState {
             State::Ended => ScriptRun::Ended { line },
             State::Faulted(fault) => ScriptRun::Faulted { line: fault.line, what: fault.kind.to_string() },
             _ if self.stopped => ScriptRun::Stopped { line },
-            _ => ScriptRun::Running { line },
+            State::Ready | State::Pausing { .. } | State::Listening { .. } => ScriptRun::Running { line },
         }
     }
 }

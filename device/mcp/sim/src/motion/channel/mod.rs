@@ -115,6 +115,7 @@ impl Channel {
     }
 
     /// Takes a command. It acts from the next tick on.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn command(&mut self, command: MotionCommand, settings: &MotionSettings) -> Outcome {
         if self.held && !matches!(command, MotionCommand::SafeStop | MotionCommand::Coast) {
             return Outcome::Refused(Refusal::Held);

@@ -48,7 +48,7 @@ impl Mode {
             Mode::Speed { acceleration, .. } => acceleration.is_some(),
             Mode::Distance(run) => run.acceleration.is_some(),
             Mode::Position(run) => run.is_ramped(),
-            _ => false,
+            Mode::Coast | Mode::Stop | Mode::Duty { .. } | Mode::Relay(_) | Mode::Home { .. } => false,
         }
     }
 
