@@ -3,11 +3,15 @@
 #[cfg(feature = "bench")]
 mod bench;
 
+#[cfg(feature = "bench")]
+use bench::{Measure, arguments::BenchArg};
 use brushwork_cli::family::Family as Commands;
 use brushwork_family::{Simulator, simulator};
 use brushwork_gui::run::{WindowOptions, run as open_window};
 use brushwork_gui::screens::face::Window;
 use brushwork_link::Driver;
+#[cfg(feature = "bench")]
+use brushwork_tuning_bench::judge::Judge;
 use std::process::ExitCode;
 
 /// A family of controllers, as each part of the program has it.
@@ -20,6 +24,12 @@ pub struct Family {
     pub window: &'static dyn Window,
     /// What they add to the command line.
     pub commands: &'static dyn Commands,
+    /// What judges the tuner on them.
+    #[cfg(feature = "bench")]
+    pub judge: Judge,
+    /// What is measured of them beside.
+    #[cfg(feature = "bench")]
+    pub measures: &'static [(BenchArg, Measure)],
 }
 
 /// The families that this program has. The one that is looked for first, and simulated where nothing else is named, is at the head. To add one,
@@ -30,12 +40,20 @@ pub static FAMILIES: [Family; 2] = [
         simulator: &brushwork_mcp::McpSimulator,
         window: &brushwork_gui::mcp::Mcp,
         commands: &brushwork_cli::mcp::McpCommands,
+        #[cfg(feature = "bench")]
+        judge: brushwork_tuning_bench::mcp::JUDGE,
+        #[cfg(feature = "bench")]
+        measures: bench::mcp::MEASURES,
     },
     Family {
         driver: &brushwork_motion_mind_client::MotionMindDriver,
         simulator: &brushwork_motion_mind::MotionMindSimulator,
         window: &brushwork_gui::motion_mind::MotionMind,
         commands: &brushwork_cli::motion_mind::MotionMindCommands,
+        #[cfg(feature = "bench")]
+        judge: brushwork_tuning_bench::motion_mind::JUDGE,
+        #[cfg(feature = "bench")]
+        measures: &[],
     },
 ];
 

@@ -1,6 +1,9 @@
 //! Arguments of `brushwork bench`.
 
+use crate::{FAMILIES, Family};
 use brushwork_cli::new_file::Replace;
+use brushwork_tuning_bench::judge::Judge;
+use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -26,8 +29,8 @@ pub struct BenchArgs {
     #[arg(long, value_name = "SEED", default_value_t = 7)]
     pub seed: u64,
     /// Controllers that `tuning` tunes.
-    #[arg(long, value_enum, default_value_t = BenchFamily::Mcp)]
-    pub family: BenchFamily,
+    #[arg(long, value_parser = family_keys(), default_value = key_of(&FAMILIES[0]))]
+    pub family: String,
     /// Of `tuning`, only the faults: they need no optima.
     #[arg(long)]
     pub faults: bool,
@@ -39,13 +42,25 @@ pub struct BenchArgs {
     pub replace: Replace,
 }
 
-/// A family of controllers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum BenchFamily {
-    /// MCP and RoboClaw, packet serial.
-    Mcp,
-    /// Motion Mind 3, frames and lines.
-    MotionMind,
+/// The families of the program by their keys.
+fn family_keys() -> PossibleValuesParser {
+    FAMILIES
+        .iter()
+        .map(|family| PossibleValue::new(key_of(family)).help(family.judge.title))
+        .collect::<Vec<_>>()
+        .into()
+}
+
+fn key_of(family: &Family) -> &'static str {
+    family.driver.family().key()
+}
+
+impl BenchArgs {
+    /// What judges the tuner on the family that is asked for.
+    #[must_use]
+    pub fn judge(&self) -> Judge {
+        FAMILIES.iter().find(|family| key_of(family) == self.family).unwrap_or(&FAMILIES[0]).judge
+    }
 }
 
 /// A benchmark.

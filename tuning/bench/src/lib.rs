@@ -1,12 +1,14 @@
 //! Judges the tuner on a population of simulated motors, in virtual time.
 //!
-//! The tuner sees packet serial alone; what the plants really are is used here, to judge it.
+//! The tuner sees its wire alone; what the plants really are is used here, to judge it.
 
 mod bounds;
-pub mod cache;
 pub mod faults;
+pub mod judge;
 pub mod line;
+pub mod mcp;
 pub mod motion_mind;
+pub mod optimum;
 pub mod oracle;
 pub mod population;
 mod quantile;
@@ -15,3 +17,4 @@ pub mod run;
 pub mod table;
 pub mod trial;
 pub mod truth;
+pub mod unit;
