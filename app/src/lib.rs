@@ -3,15 +3,11 @@
 #[cfg(feature = "bench")]
 mod bench;
 
-#[cfg(feature = "bench")]
-use bench::{Measure, arguments::BenchArg};
 use brushwork_cli::family::Family as Commands;
 use brushwork_family::{Simulator, simulator};
 use brushwork_gui::run::{WindowOptions, run as open_window};
 use brushwork_gui::screens::face::Window;
 use brushwork_link::Driver;
-#[cfg(feature = "bench")]
-use brushwork_tuning_bench::judge::Judge;
 use std::process::ExitCode;
 
 /// A family of controllers, as each part of the program has it.
@@ -24,12 +20,12 @@ pub struct Family {
     pub window: &'static dyn Window,
     /// What they add to the command line.
     pub commands: &'static dyn Commands,
-    /// What judges the tuner on them.
+    /// What judges the tuner on them, where they can be tuned.
     #[cfg(feature = "bench")]
-    pub judge: Judge,
+    pub judge: Option<brushwork_tuning_bench::judge::Judge>,
     /// What is measured of them beside.
     #[cfg(feature = "bench")]
-    pub measures: &'static [(BenchArg, Measure)],
+    pub measures: &'static [bench::Measure],
 }
 
 /// The families that this program has. The one that is looked for first, and simulated where nothing else is named, is at the head. To add one,
@@ -41,7 +37,7 @@ pub static FAMILIES: [Family; 2] = [
         window: &brushwork_gui::mcp::Mcp,
         commands: &brushwork_cli::mcp::McpCommands,
         #[cfg(feature = "bench")]
-        judge: brushwork_tuning_bench::mcp::JUDGE,
+        judge: Some(brushwork_tuning_bench::mcp::JUDGE),
         #[cfg(feature = "bench")]
         measures: bench::mcp::MEASURES,
     },
@@ -51,7 +47,7 @@ pub static FAMILIES: [Family; 2] = [
         window: &brushwork_gui::motion_mind::MotionMind,
         commands: &brushwork_cli::motion_mind::MotionMindCommands,
         #[cfg(feature = "bench")]
-        judge: brushwork_tuning_bench::motion_mind::JUDGE,
+        judge: Some(brushwork_tuning_bench::motion_mind::JUDGE),
         #[cfg(feature = "bench")]
         measures: &[],
     },

@@ -1,9 +1,9 @@
 //! Arguments of `brushwork bench`.
 
-use crate::{FAMILIES, Family};
+use crate::FAMILIES;
 use brushwork_cli::new_file::Replace;
 use brushwork_tuning_bench::judge::Judge;
-use clap::builder::{PossibleValue, PossibleValuesParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -29,8 +29,8 @@ pub struct BenchArgs {
     #[arg(long, value_name = "SEED", default_value_t = 7)]
     pub seed: u64,
     /// Controllers that `tuning` tunes.
-    #[arg(long, value_parser = family_keys(), default_value = key_of(&FAMILIES[0]))]
-    pub family: String,
+    #[arg(long, value_parser = judge_of(), default_value = judges().next().map_or("", |(key, _)| key))]
+    pub family: Judge,
     /// Of `tuning`, only the faults: they need no optima.
     #[arg(long)]
     pub faults: bool,
@@ -42,25 +42,15 @@ pub struct BenchArgs {
     pub replace: Replace,
 }
 
-/// The families of the program by their keys.
-fn family_keys() -> PossibleValuesParser {
-    FAMILIES
-        .iter()
-        .map(|family| PossibleValue::new(key_of(family)).help(family.judge.title))
-        .collect::<Vec<_>>()
-        .into()
+/// What judges the tuner, by the keys of the program's families.
+fn judges() -> impl Iterator<Item = (&'static str, Judge)> {
+    FAMILIES.iter().filter_map(|family| Some((family.driver.family().key(), family.judge?)))
 }
 
-fn key_of(family: &Family) -> &'static str {
-    family.driver.family().key()
-}
-
-impl BenchArgs {
-    /// What judges the tuner on the family that is asked for.
-    #[must_use]
-    pub fn judge(&self) -> Judge {
-        FAMILIES.iter().find(|family| key_of(family) == self.family).unwrap_or(&FAMILIES[0]).judge
-    }
+fn judge_of() -> impl TypedValueParser<Value = Judge> {
+    let keys = judges().map(|(key, judge)| PossibleValue::new(key).help(judge.title));
+    let of = |asked: String| judges().find(|(key, _)| *key == asked).map(|(_, judge)| judge);
+    PossibleValuesParser::new(keys).try_map(move |asked| of(asked).ok_or("no such family"))
 }
 
 /// A benchmark.

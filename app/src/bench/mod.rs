@@ -42,8 +42,8 @@ pub struct Effort {
     pub mcl_rounds: usize,
 }
 
-/// Measures something of one family.
-pub type Measure = fn(Effort, &Interrupt) -> Result<Vec<Figure>, String>;
+/// Something that is measured of one family, and what measures it.
+pub type Measure = (BenchArg, fn(Effort, &Interrupt) -> Result<Vec<Figure>, String>);
 
 /// The figures that are quoted.
 const FULL: Effort = Effort {

@@ -30,7 +30,7 @@ pub fn run(args: &BenchArgs, out: &mut Output) -> Exit {
         say("A benchmark needs at least one motor: use --plants 200.");
         return Exit::Usage;
     }
-    let judge = args.judge();
+    let judge = args.family;
     if args.faults {
         let rows = (judge.faults)(args.seed, args.plants);
         let printed = if args.json { out.json(&rows) } else { print_faults(&rows, out) };

@@ -10,7 +10,7 @@ use super::Measure;
 use super::arguments::BenchArg;
 
 /// What is measured, and what measures it.
-pub const MEASURES: &[(BenchArg, Measure)] = &[
+pub const MEASURES: &[Measure] = &[
     (BenchArg::Link, link::measure),
     (BenchArg::Stop, stop::measure),
     (BenchArg::Sim, |effort, _| sim::measure(effort)),
