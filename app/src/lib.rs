@@ -22,6 +22,12 @@ pub struct Family {
     pub window: &'static dyn Window,
     /// What they add to the command line.
     pub commands: &'static dyn Commands,
+    /// What judges the tuner on them, where they can be tuned.
+    #[cfg(feature = "bench")]
+    pub judge: Option<brushwork_tuning_bench::judge::Judge>,
+    /// What is measured of them beside.
+    #[cfg(feature = "bench")]
+    pub measures: &'static [bench::Measure],
 }
 
 /// The families that this program has. The one that is looked for first, and simulated where nothing else is named, is at the head. To add one,
@@ -32,12 +38,20 @@ pub static FAMILIES: [Family; 2] = [
         simulator: &brushwork_mcp::McpSimulator,
         window: &brushwork_gui::mcp::Mcp,
         commands: &brushwork_cli::mcp::McpCommands,
+        #[cfg(feature = "bench")]
+        judge: Some(brushwork_tuning_bench::mcp::JUDGE),
+        #[cfg(feature = "bench")]
+        measures: bench::mcp::MEASURES,
     },
     Family {
         driver: &brushwork_motion_mind_client::MotionMindDriver,
         simulator: &brushwork_motion_mind::MotionMindSimulator,
         window: &brushwork_gui::motion_mind::MotionMind,
         commands: &brushwork_cli::motion_mind::MotionMindCommands,
+        #[cfg(feature = "bench")]
+        judge: Some(brushwork_tuning_bench::motion_mind::JUDGE),
+        #[cfg(feature = "bench")]
+        measures: &[],
     },
 ];
 

@@ -1,6 +1,9 @@
 //! Arguments of `brushwork bench`.
 
+use crate::FAMILIES;
 use brushwork_cli::new_file::Replace;
+use brushwork_tuning_bench::judge::Judge;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -26,8 +29,8 @@ pub struct BenchArgs {
     #[arg(long, value_name = "SEED", default_value_t = 7)]
     pub seed: u64,
     /// Controllers that `tuning` tunes.
-    #[arg(long, value_enum, default_value_t = BenchFamily::Mcp)]
-    pub family: BenchFamily,
+    #[arg(long, value_parser = judge_of(), default_value = judges().next().map_or("", |(key, _)| key))]
+    pub family: Judge,
     /// Of `tuning`, only the faults: they need no optima.
     #[arg(long)]
     pub faults: bool,
@@ -39,13 +42,15 @@ pub struct BenchArgs {
     pub replace: Replace,
 }
 
-/// A family of controllers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum BenchFamily {
-    /// MCP and RoboClaw, packet serial.
-    Mcp,
-    /// Motion Mind 3, frames and lines.
-    MotionMind,
+/// What judges the tuner, by the keys of the program's families.
+fn judges() -> impl Iterator<Item = (&'static str, Judge)> {
+    FAMILIES.iter().filter_map(|family| Some((family.driver.family().key(), family.judge?)))
+}
+
+fn judge_of() -> impl TypedValueParser<Value = Judge> {
+    let keys = judges().map(|(key, judge)| PossibleValue::new(key).help(judge.title));
+    let of = |asked: String| judges().find(|(key, _)| *key == asked).map(|(_, judge)| judge);
+    PossibleValuesParser::new(keys).try_map(move |asked| of(asked).ok_or("no such family"))
 }
 
 /// A benchmark.

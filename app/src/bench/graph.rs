@@ -9,10 +9,10 @@ use egui::{Context, Pos2, RawInput, Rect, vec2};
 use egui_plot::{Line, Plot, PlotPoint, PlotPoints};
 use serde::Serialize;
 
+use crate::FAMILIES;
 use brushwork_gui::graph::{LiveGraph, plot};
 use brushwork_gui::model::channels::graph_channels;
 use brushwork_gui::theme;
-use brushwork_mcp_client::channels::CHANNELS;
 
 /// Samples of an hour at 100 Hz.
 const ROWS: u32 = 360_000;
@@ -115,7 +115,7 @@ fn plain_ui(ui: &mut egui::Ui, lines: &[Vec<PlotPoint>], (start_s, end_s): Windo
 
 /// An hour from `start_s` on: noise on slow waves, so that no two columns are alike. All channels are shown.
 pub fn hour(channels: usize, start_s: f64) -> LiveGraph {
-    let mut infos = graph_channels(CHANNELS);
+    let mut infos = graph_channels(FAMILIES[0].window.channels());
     infos.truncate(channels);
     infos.iter_mut().for_each(|info| info.shown = true);
     let mut graph = LiveGraph::new(infos, INTERVAL_S);

@@ -8,12 +8,8 @@ mod editor;
 mod figure;
 mod graph;
 mod headless;
-mod link;
-mod mcl;
-mod rig;
-mod sim;
+pub mod mcp;
 mod spread;
-mod stop;
 mod tap;
 mod tuning;
 mod window;
@@ -22,6 +18,7 @@ use std::time::Duration;
 
 use serde_json::json;
 
+use crate::FAMILIES;
 use arguments::{BenchArg, BenchArgs};
 use brushwork_cli::interrupt::Interrupt;
 use brushwork_cli::output::{Output, OutputError, say};
@@ -44,6 +41,9 @@ pub struct Effort {
     /// Rounds of each loop of the script benchmark.
     pub mcl_rounds: usize,
 }
+
+/// Something that is measured of one family, and what measures it.
+pub type Measure = (BenchArg, fn(Effort, &Interrupt) -> Result<Vec<Figure>, String>);
 
 /// The figures that are quoted.
 const FULL: Effort = Effort {
@@ -100,14 +100,14 @@ fn run(args: &BenchArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
 }
 
 fn measure(what: BenchArg, effort: Effort, interrupt: &Interrupt) -> Result<Vec<Figure>, String> {
-    match what {
-        BenchArg::Link => link::measure(effort, interrupt),
-        BenchArg::Stop => stop::measure(effort, interrupt),
-        BenchArg::Sim => sim::measure(effort),
-        BenchArg::Window => window::measure(effort),
-        BenchArg::Mcl => mcl::measure(effort),
-        BenchArg::Tuning | BenchArg::All => unreachable!("`wanted` gives neither"),
+    if what == BenchArg::Window {
+        return window::measure(effort);
     }
+    let measures = FAMILIES.iter().flat_map(|family| family.measures).filter(|(of, _)| *of == what);
+    measures
+        .map(|(_, measure)| measure(effort, interrupt))
+        .collect::<Result<Vec<_>, _>>()
+        .map(|all| all.concat())
 }
 
 /// Each benchmark once, in the order of the table.

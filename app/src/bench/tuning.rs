@@ -1,11 +1,9 @@
 //! `brushwork bench tuning`: the tuner and every textbook rule, side by side on the same records.
 
-use brushwork_tuning_bench::faults::{FaultRow, fault_rows};
-use brushwork_tuning_bench::motion_mind;
-use brushwork_tuning_bench::population::population;
-use brushwork_tuning_bench::table::{Row, Table, cases, optima_of, table};
+use brushwork_tuning_bench::faults::FaultRow;
+use brushwork_tuning_bench::table::{Row, Table};
 
-use super::arguments::{BenchArgs, BenchFamily};
+use super::arguments::BenchArgs;
 use brushwork_cli::Exit;
 use brushwork_cli::new_file::NewFile;
 use brushwork_cli::output::{Output, OutputError, say};
@@ -32,40 +30,22 @@ pub fn run(args: &BenchArgs, out: &mut Output) -> Exit {
         say("A benchmark needs at least one motor: use --plants 200.");
         return Exit::Usage;
     }
+    let judge = args.family;
     if args.faults {
-        let rows = match args.family {
-            BenchFamily::Mcp => fault_rows(&population(args.seed, args.plants)),
-            BenchFamily::MotionMind => motion_mind::faults::fault_rows(
-                &motion_mind::population::population(args.seed, args.plants),
-                &[],
-            ),
-        };
+        let rows = (judge.faults)(args.seed, args.plants);
         let printed = if args.json { out.json(&rows) } else { print_faults(&rows, out) };
         return printed.map_or_else(Exit::from, |()| Exit::Done);
     }
-    let is_fresh = args.write_oracle.is_some();
     // The optima take an hour.
     let mut file = args.write_oracle.as_deref().map(|path| NewFile::new(path, args.replace));
     if let Some(Err(error)) = file.as_ref().map(NewFile::check) {
         return error.into();
     }
-    let (optima, table) = match args.family {
-        BenchFamily::Mcp => {
-            let cases = cases(args.seed, args.plants, is_fresh);
-            let optima = is_fresh.then(|| serde_json::to_string(&optima_of(&cases)));
-            (optima, (!is_fresh).then(|| table(args.seed, &cases, !args.quick)))
-        }
-        BenchFamily::MotionMind => {
-            let cases = motion_mind::table::cases(args.seed, args.plants, is_fresh);
-            let optima = is_fresh.then(|| serde_json::to_string(&motion_mind::table::optima_of(&cases)));
-            (optima, (!is_fresh).then(|| motion_mind::table::table(args.seed, &cases, !args.quick)))
-        }
-    };
     if let Some(file) = &mut file {
-        let text = optima.and_then(Result::ok).unwrap_or_default();
+        let text = (judge.optima)(args.seed, args.plants).unwrap_or_default();
         return file.write(text.as_bytes()).map_or_else(Exit::from, |()| Exit::Done);
     }
-    let Some(table) = table else { return Exit::Failed };
+    let table = (judge.table)(args.seed, args.plants, !args.quick);
     let printed = if args.json { out.json(&table) } else { print(&table, out) };
     printed.map_or_else(Exit::from, |()| Exit::Done)
 }

@@ -13,8 +13,9 @@ use brushwork_tests::wait::LIMIT;
 use brushwork_tuning::joined::Joined;
 use brushwork_tuning::report::Verdict;
 use brushwork_tuning::tune::{Method, tune};
-use brushwork_tuning_bench::population::specimen;
-use brushwork_tuning_bench::run::{axis_of, request_of};
+use brushwork_tuning_bench::mcp::population::specimen;
+use brushwork_tuning_bench::run::request_of;
+use brushwork_tuning_bench::unit::Unit;
 
 const BRUSHWORK: &str = env!("CARGO_BIN_EXE_brushwork-for-tests");
 
@@ -39,7 +40,7 @@ fn report(name: &str, plant: usize, method: Method, level: f64) -> Report {
     if std::env::var_os("UPDATE_REPORTS").is_some() {
         let plant = specimen(7, plant);
         let request = Request { level, ..request_of(&plant, method) };
-        file::write(&tune(&mut Joined::first(Box::new(axis_of(&plant))), &request), &path)
+        file::write(&tune(&mut Joined::first(Box::new(Unit::axis(&plant))), &request), &path)
             .expect("the folder is in the repository");
     }
     file::read(&path).expect("it is in the repository")

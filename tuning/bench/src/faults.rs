@@ -1,20 +1,17 @@
 //! Faults put into the machine before or during a run: is the motor off in time, and is the fault named right?
 
-use crate::line::{Bench, Event, SimulatedLine};
+use crate::line::{Bench as _, Event};
 use crate::population::{Draw, Kind, Specimen};
 use crate::quantile::quantile;
-use crate::run::{SimulatedAxis, axis_of, request_of};
-use crate::truth::{Truth, truth};
-use brushwork_mcp_axis::McpLaw;
-use brushwork_mcp_sim::controller::Controller;
+use crate::run::request_of;
+use crate::truth::Truth;
+use crate::unit::{Report, Request, Unit};
 use brushwork_plant::world::WorldAction;
 use brushwork_plant::{StopKind, TravelParams};
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::law::Law;
-use brushwork_tuning::law_probe::LawProbe;
-use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::setup::LoopAxis;
-use brushwork_tuning::tune::{Excitation, Method, Request, tune};
+use brushwork_tuning::report::{self, Verdict};
+use brushwork_tuning::tune::{Excitation, Method, tune};
 use brushwork_values::Motor;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -22,61 +19,6 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::time::Duration;
-
-/// The plant under test that faults strike, under a controller of some family.
-pub trait FaultyPlant: Clone + Send + Sync {
-    /// The law of its controller.
-    type Law: LawProbe;
-    /// Its axis over the wire.
-    type Axis: LoopAxis<Self::Law>;
-    /// Its controller.
-    type Unit: Bench;
-    /// The methods whose trials are struck, and whose runs have to be quiet.
-    const WHOLE: [Method; 2];
-    /// Whether the wire carries the battery's voltage.
-    const REPORTS_VOLTS: bool;
-    /// How soon the motor must be off when the link is gone, s.
-    const LINK_DEADLINE_S: f64;
-    /// The motor.
-    fn plant(&self) -> &Specimen;
-    /// The motor, to be changed.
-    fn plant_mut(&mut self) -> &mut Specimen;
-    /// What it really is.
-    fn truth(&self) -> Truth<Self::Law>;
-    /// A fresh axis.
-    fn axis(&self) -> Self::Axis;
-    /// The line beneath an axis.
-    fn line(axis: &mut Self::Axis) -> &mut SimulatedLine<Self::Unit>;
-}
-
-impl FaultyPlant for Specimen {
-    type Law = McpLaw;
-    type Axis = SimulatedAxis;
-    type Unit = Controller;
-    const WHOLE: [Method; 2] = [Method::Velocity, Method::Piv];
-    const REPORTS_VOLTS: bool = true;
-    const LINK_DEADLINE_S: f64 = 0.25;
-
-    fn plant(&self) -> &Specimen {
-        self
-    }
-
-    fn plant_mut(&mut self) -> &mut Specimen {
-        self
-    }
-
-    fn truth(&self) -> Truth {
-        truth(self)
-    }
-
-    fn axis(&self) -> SimulatedAxis {
-        axis_of(self)
-    }
-
-    fn line(axis: &mut SimulatedAxis) -> &mut SimulatedLine {
-        &mut axis.carrier
-    }
-}
 
 /// The row of runs without a fault.
 const HEALTHY: &str = "healthy";
@@ -148,7 +90,7 @@ enum WorldChange {
 }
 
 impl WorldChange {
-    fn action(self, specimen: &Specimen) -> WorldAction {
+    fn action<U>(self, specimen: &Specimen<U>) -> WorldAction {
         let motor = Motor::M1;
         match self {
             Self::ReverseEncoder => WorldAction::ReverseEncoder { motor, on: true },
@@ -207,21 +149,21 @@ struct Run {
 }
 
 /// A plant, what it is, and how long its identification takes.
-struct Subject<P: FaultyPlant> {
-    specimen: P,
-    truth: Truth<P::Law>,
+struct Subject<U: Unit> {
+    specimen: Specimen<U>,
+    truth: Truth<U::Law>,
     /// Length of the identification, and of whole runs by method, s.
     span_s: f64,
     whole_s: [f64; 2],
 }
 
-impl<P: FaultyPlant> Subject<P> {
-    fn new(specimen: &P) -> Self {
-        let whole = |method| tune(&mut specimen.axis(), &request_of(specimen.plant(), method)).seconds.1;
+impl<U: Unit> Subject<U> {
+    fn new(specimen: &Specimen<U>) -> Self {
+        let whole = |method| tune(&mut U::axis(specimen), &request_of(specimen, method)).seconds.1;
         Self {
             span_s: healthy(specimen, 0, None).0.seconds.0,
-            whole_s: P::WHOLE.map(whole),
-            truth: specimen.truth(),
+            whole_s: U::WHOLE.map(whole),
+            truth: U::truth(specimen),
             specimen: specimen.clone(),
         }
     }
@@ -229,21 +171,21 @@ impl<P: FaultyPlant> Subject<P> {
 
 /// Every class on every plant, and the healthy runs as the last row, whose `named` is the share without alarm.
 #[must_use]
-pub fn fault_rows<P: FaultyPlant>(plants: &[P]) -> Vec<FaultRow> {
+pub fn fault_rows<U: Unit>(plants: &[Specimen<U>]) -> Vec<FaultRow> {
     rows_of(plants, &[])
 }
 
 /// The same of the classes named only; all of them where none is.
 #[must_use]
-pub fn rows_of<P: FaultyPlant>(plants: &[P], names: &[&str]) -> Vec<FaultRow> {
+pub fn rows_of<U: Unit>(plants: &[Specimen<U>], names: &[&str]) -> Vec<FaultRow> {
     let wanted = |name: &str| names.is_empty() || names.contains(&name);
-    let can_be = |class: &&Class| P::REPORTS_VOLTS || class.fault != Fault::During(WorldChange::LowBattery);
-    let subjects: Vec<Subject<P>> = plants.par_iter().map(Subject::new).collect();
+    let can_be = |class: &&Class| U::REPORTS_VOLTS || class.fault != Fault::During(WorldChange::LowBattery);
+    let subjects: Vec<Subject<U>> = plants.par_iter().map(Subject::new).collect();
     let classes = CLASSES.iter().filter(|class| wanted(class.name)).filter(can_be);
     let mut rows: Vec<FaultRow> = classes
         .map(|class| {
             let able = subjects.par_iter().filter(|subject| subject.span_s > 0.0);
-            let deadline_s = class.deadline_s::<P>();
+            let deadline_s = class.deadline_s::<U>();
             let runs: Vec<Run> = able.map(|subject| run(class, subject)).collect();
             summary(class.name, deadline_s, &runs)
         })
@@ -253,7 +195,7 @@ pub fn rows_of<P: FaultyPlant>(plants: &[P], names: &[&str]) -> Vec<FaultRow> {
             .into_par_iter()
             .map(|n| {
                 let subject = &subjects[n % subjects.len()];
-                let method = healthy_method::<P>(n / subjects.len() + n);
+                let method = healthy_method::<U>(n / subjects.len() + n);
                 let (report, mut axis) = healthy(&subject.specimen, n as u64, method);
                 Run::quiet(subject, &mut axis, &report, true)
             })
@@ -265,7 +207,7 @@ pub fn rows_of<P: FaultyPlant>(plants: &[P], names: &[&str]) -> Vec<FaultRow> {
 
 /// Whether a report blames the machine.
 #[must_use]
-pub fn is_alarm<L: Law>(report: &Report<L>) -> bool {
+pub fn is_alarm<L: Law>(report: &report::Report<L>) -> bool {
     const ALARMS: [Cause; 11] = [
         Cause::EncoderReversed,
         Cause::EncoderDead,
@@ -282,42 +224,42 @@ pub fn is_alarm<L: Law>(report: &Report<L>) -> bool {
     report.verdict == Verdict::Refused && report.causes.first().is_some_and(|cause| ALARMS.contains(cause))
 }
 
-fn identification_only<L: Law>(specimen: &Specimen) -> Request<L> {
-    Request { verify: false, ..request_of(specimen, Method::Velocity) }
+fn identification_only<U: Unit>(specimen: &Specimen<U>) -> Request<U> {
+    Request::<U> { verify: false, ..request_of(specimen, Method::Velocity) }
 }
 
 /// Every third run is an identification alone.
-fn healthy_method<P: FaultyPlant>(n: usize) -> Option<Method> {
-    P::WHOLE.get(n % 3).copied()
+fn healthy_method<U: Unit>(n: usize) -> Option<Method> {
+    U::WHOLE.get(n % 3).copied()
 }
 
-fn healthy<P: FaultyPlant>(specimen: &P, round: u64, method: Option<Method>) -> (Report<P::Law>, P::Axis) {
+fn healthy<U: Unit>(specimen: &Specimen<U>, round: u64, method: Option<Method>) -> (Report<U>, U::Axis) {
     let mut specimen = specimen.clone();
-    let link = &mut specimen.plant_mut().link;
+    let link = &mut specimen.link;
     link.seed = link.seed.wrapping_add(round.wrapping_mul(0x9E37_79B9_7F4A_7C15));
-    let mut axis = specimen.axis();
-    let plant = specimen.plant();
-    let request = method.map_or_else(|| identification_only(plant), |method| request_of(plant, method));
+    let mut axis = U::axis(&specimen);
+    let request =
+        method.map_or_else(|| identification_only(&specimen), |method| request_of(&specimen, method));
     let report = tune(&mut axis, &request);
     (report, axis)
 }
 
-fn peak<P: FaultyPlant>(axis: &mut P::Axis, subject: &Subject<P>) -> f64 {
-    let plant = subject.specimen.plant();
-    100.0 * P::line(axis).truth.peak_amps / plant.axis.stall_amps(plant.volts())
+fn peak<U: Unit>(axis: &mut U::Axis, subject: &Subject<U>) -> f64 {
+    let plant = &subject.specimen;
+    100.0 * U::line(axis).truth.peak_amps / plant.axis.stall_amps(plant.volts())
 }
 
-fn run<P: FaultyPlant>(class: &Class, subject: &Subject<P>) -> Run {
-    let (specimen, span_s) = (subject.specimen.plant(), subject.span_s);
+fn run<U: Unit>(class: &Class, subject: &Subject<U>) -> Run {
+    let (specimen, span_s) = (&subject.specimen, subject.span_s);
     let name_seed = class.name.bytes().map(u64::from).sum::<u64>();
     let mut draw = Draw(ChaCha8Rng::seed_from_u64(specimen.link.seed ^ name_seed));
     // The probe takes most of the first second; faults of the run strike after it.
     let probe_s: f64 = 0.12 + 0.06 * 14.0;
-    let nth = specimen.number % P::WHOLE.len();
+    let nth = specimen.number % U::WHOLE.len();
     let (request, strike_s) = match class.fault {
         Fault::InTrial(_) => {
             let trial_s = (subject.whole_s[nth] - span_s).max(0.1);
-            (request_of(specimen, P::WHOLE[nth]), span_s + draw.between(STRIKES) * trial_s)
+            (request_of(specimen, U::WHOLE[nth]), span_s + draw.between(STRIKES) * trial_s)
         }
         Fault::Before(_) | Fault::During(_) | Fault::LinkDrop | Fault::EndStop | Fault::Window => {
             let strike_s = probe_s.min(0.5 * span_s) + draw.between(STRIKES) * (span_s - probe_s).max(0.3);
@@ -325,12 +267,12 @@ fn run<P: FaultyPlant>(class: &Class, subject: &Subject<P>) -> Run {
         }
     };
     let mut axis = match class.fault {
-        Fault::EndStop => with_end_stops(subject).axis(),
-        Fault::Before(_) | Fault::During(_) | Fault::InTrial(_) | Fault::LinkDrop | Fault::Window => {
-            subject.specimen.axis()
-        }
+            Fault::EndStop => U::axis(&with_end_stops(subject)),
+            Fault::Before(_) | Fault::During(_) | Fault::InTrial(_) | Fault::LinkDrop | Fault::Window => {
+                U::axis(&subject.specimen)
+            }
     };
-    let line = P::line(&mut axis);
+    let line = U::line(&mut axis);
     let start = line.unit().time();
     let strike = start + Duration::from_secs_f64(strike_s);
     let mut from = strike;
@@ -350,9 +292,9 @@ fn run<P: FaultyPlant>(class: &Class, subject: &Subject<P>) -> Run {
         return run_in_window(subject, axis);
     }
     let report = tune(&mut axis, &request);
-    let deadline_s = class.deadline_s::<P>();
-    P::line(&mut axis).idle(Duration::from_millis(300).max(Duration::from_secs_f64(2.0 * deadline_s)));
-    let seen = P::line(&mut axis).truth;
+    let deadline_s = class.deadline_s::<U>();
+    U::line(&mut axis).idle(Duration::from_millis(300).max(Duration::from_secs_f64(2.0 * deadline_s)));
+    let seen = U::line(&mut axis).truth;
     if class.fault == Fault::EndStop {
         let Some(hit) = seen.stop_hit_at else {
             // It never came that far: nothing happened, nothing to name.
@@ -378,20 +320,15 @@ fn run<P: FaultyPlant>(class: &Class, subject: &Subject<P>) -> Run {
 }
 
 impl Class {
-    fn deadline_s<P: FaultyPlant>(&self) -> f64 {
-        if self.fault == Fault::LinkDrop { P::LINK_DEADLINE_S } else { self.deadline_s }
+    fn deadline_s<U: Unit>(&self) -> f64 {
+        if self.fault == Fault::LinkDrop { U::LINK_DEADLINE_S } else { self.deadline_s }
     }
 }
 
 impl Run {
     /// A run in which nothing happened: any alarm is a false one.
-    fn quiet<P: FaultyPlant>(
-        subject: &Subject<P>,
-        axis: &mut P::Axis,
-        report: &Report<P::Law>,
-        in_time: bool,
-    ) -> Self {
-        let plant = subject.specimen.plant();
+    fn quiet<U: Unit>(subject: &Subject<U>, axis: &mut U::Axis, report: &Report<U>, in_time: bool) -> Self {
+        let plant = &subject.specimen;
         Self {
             plant: (plant.number, plant.kind),
             at_s: 0.0,
@@ -405,37 +342,37 @@ impl Run {
 }
 
 /// A window half as wide as the identification is judged with: it is used, or refused, but never crossed.
-fn run_in_window<P: FaultyPlant>(subject: &Subject<P>, mut axis: P::Axis) -> Run {
+fn run_in_window<U: Unit>(subject: &Subject<U>, mut axis: U::Axis) -> Run {
     let width = (0.1 * subject.truth.qpps).round().max(40.0);
     let half = (0.5 * width) as i64;
     let mut request =
-        Request { excitation: Excitation::Window(width), ..identification_only(subject.specimen.plant()) };
+        Request::<U> { excitation: Excitation::Window(width), ..identification_only(&subject.specimen) };
     request.method = Method::Pd;
     request.guard.travel = Some((-half, half));
     let report = tune(&mut axis, &request);
-    let per_radian = subject.specimen.plant().axis.counts_per_motor_radian();
-    let reach = P::line(&mut axis).truth.farthest_radians * per_radian;
+    let per_radian = subject.specimen.axis.counts_per_motor_radian();
+    let reach = U::line(&mut axis).truth.farthest_radians * per_radian;
     // Half a count of rounding on either side.
     let kept = reach <= half as f64 + 1.0;
     Run::quiet(subject, &mut axis, &report, kept)
 }
 
 /// End stops a quarter of a second of full speed away.
-fn end_stop_radians<P: FaultyPlant>(subject: &Subject<P>) -> f64 {
+fn end_stop_radians<U: Unit>(subject: &Subject<U>) -> f64 {
     let seconds = 0.25 + subject.truth.tau_s;
-    let axis = &subject.specimen.plant().axis;
+    let axis = &subject.specimen.axis;
     seconds * subject.truth.qpps / axis.counts_per_motor_radian() / axis.gear.ratio
 }
 
-fn with_end_stops<P: FaultyPlant>(subject: &Subject<P>) -> P {
+fn with_end_stops<U: Unit>(subject: &Subject<U>) -> Specimen<U> {
     let mut specimen = subject.specimen.clone();
     let stop = end_stop_radians(subject);
-    specimen.plant_mut().axis.load.travel =
+    specimen.axis.load.travel =
         Some(TravelParams { lower_radians: -stop, upper_radians: stop, stop: StopKind::Hard });
     specimen
 }
 
-fn first<L: Law>(report: &Report<L>) -> Option<Cause> {
+fn first<L: Law>(report: &report::Report<L>) -> Option<Cause> {
     (report.verdict == Verdict::Refused).then(|| report.causes.first().copied()).flatten()
 }
 

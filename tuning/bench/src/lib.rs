@@ -1,14 +1,16 @@
 //! Judges the tuner on a population of simulated motors, in virtual time.
 //!
-//! The tuner sees packet serial alone; what the plants really are is used here, to judge it.
+//! The tuner sees its wire alone; what the plants really are is used here, to judge it.
 
 #![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
 
 mod bounds;
-pub mod cache;
 pub mod faults;
+pub mod judge;
 pub mod line;
+pub mod mcp;
 pub mod motion_mind;
+pub mod optimum;
 pub mod oracle;
 pub mod population;
 mod quantile;
@@ -17,3 +19,4 @@ pub mod run;
 pub mod table;
 pub mod trial;
 pub mod truth;
+pub mod unit;

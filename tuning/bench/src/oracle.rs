@@ -3,15 +3,14 @@
 //! A global grid and a local search on the true plant and the exact simulation, under a maximum sensitivity of 1.6. The search
 //! minimises the worst cost over gains moved by 2 %, so that it does not settle on a lucky point.
 
-use crate::population::Specimen;
-use crate::trial::{Outcome, Registers, position_trial, velocity_trial};
+use crate::optimum::{Optima, Optimum};
+use crate::trial::Outcome;
 use crate::truth::Truth;
-use brushwork_mcp_axis::McpLaw;
+use crate::unit::{UnderTest, Unit};
 use brushwork_tuning::law::Law;
 use brushwork_tuning::model::{Gains, Pid};
 use brushwork_tuning::score::{POSITION_OVERSHOOT, VELOCITY_OVERSHOOT};
 use brushwork_tuning::tune::Method;
-use serde::{Deserialize, Serialize};
 
 /// Highest sensitivity and duty noise of an oracle.
 const MS: f64 = 1.6;
@@ -22,40 +21,6 @@ const FIRMNESS: f64 = 0.02;
 /// Duty that the integral of a PID may carry.
 const INTEGRAL_DUTY: f64 = 0.5;
 
-/// The optimum of one plant for one method.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Optimum {
-    /// Worst cost over gains moved by 2 %.
-    pub cost: f64,
-    /// Root mean square of the duty at rest.
-    pub duty_rms: f64,
-    /// The gains.
-    pub gains: Gains,
-}
-
-/// The optima of one plant. PID is measured against the better of PD and PIV.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Optima {
-    /// Velocity PI.
-    pub velocity: Option<Optimum>,
-    /// Position PD.
-    pub pd: Option<Optimum>,
-    /// Position PIV.
-    pub piv: Option<Optimum>,
-}
-
-impl Optima {
-    /// What a method is measured against.
-    #[must_use]
-    pub fn of(&self, method: Method) -> Option<Optimum> {
-        match method {
-            Method::Velocity => self.velocity,
-            Method::Pd => self.pd,
-            Method::Piv | Method::Pid => self.piv,
-        }
-    }
-}
-
 /// The cost of an outcome, as the oracle and the tables count it.
 #[must_use]
 pub fn cost(method: Method, outcome: &Outcome) -> f64 {
@@ -63,82 +28,33 @@ pub fn cost(method: Method, outcome: &Outcome) -> f64 {
     outcome.score.cost(scale)
 }
 
-/// The plant that gains are tried on.
-pub trait PlantUnderTest {
-    /// The law of its controller.
-    type Law: Law;
-    /// What the plant is.
-    fn truth(&self) -> &Truth<Self::Law>;
-    /// Gains as the registers hold them.
-    fn rounded(&self, gains: &Gains) -> Gains;
-    /// One trial of a method.
-    fn outcome(&self, method: Method, gains: &Gains) -> Outcome;
-}
-
-/// A plant under packet serial.
-struct PacketPlantUnderTest<'a> {
-    specimen: &'a Specimen,
-    truth: &'a Truth,
-}
-
-impl PlantUnderTest for PacketPlantUnderTest<'_> {
-    type Law = McpLaw;
-
-    fn truth(&self) -> &Truth {
-        self.truth
-    }
-
-    fn rounded(&self, gains: &Gains) -> Gains {
-        Registers::of(gains, self.truth.qpps, self.truth).gains(self.truth)
-    }
-
-    fn outcome(&self, method: Method, gains: &Gains) -> Outcome {
-        let registers = Registers::of(gains, self.truth.qpps, self.truth);
-        trial(method, self.specimen, self.truth, &registers)
-    }
-}
-
-/// One trial of a method.
-#[must_use]
-pub fn trial(method: Method, specimen: &Specimen, truth: &Truth, registers: &Registers) -> Outcome {
-    match method {
-        Method::Velocity => velocity_trial(specimen, truth, registers),
-        Method::Pd | Method::Pid | Method::Piv => position_trial(specimen, truth, registers),
-    }
-}
-
 /// Finds the optima of a plant.
 #[must_use]
-pub fn optima(specimen: &Specimen, truth: &Truth) -> Optima {
-    let under_test = PacketPlantUnderTest { specimen, truth };
-    let of = |method| optimum(&under_test, method);
-    Optima { velocity: of(Method::Velocity), pd: of(Method::Pd), piv: of(Method::Piv) }
+pub fn optima<U: Unit>(under_test: &UnderTest<U>) -> U::Optima {
+    U::Optima::worked_out(|method| optimum(under_test, method))
 }
 
 /// The optima of its position loops alone, for a plant whose speed cannot be run freely.
 #[must_use]
-pub fn position_optima(specimen: &Specimen, truth: &Truth) -> Optima {
-    let under_test = PacketPlantUnderTest { specimen, truth };
-    let of = |method| optimum(&under_test, method);
-    Optima { velocity: None, pd: of(Method::Pd), piv: of(Method::Piv) }
+pub fn position_optima<U: Unit>(under_test: &UnderTest<U>) -> U::Optima {
+    U::Optima::worked_out(|method| (method != Method::Velocity).then(|| optimum(under_test, method))?)
 }
 
 /// Finds the optimum of one method.
-#[must_use]
-pub fn optimum<L: Law>(under_test: &dyn PlantUnderTest<Law = L>, method: Method) -> Option<Optimum> {
-    Search { method, under_test, truth: under_test.truth() }.run()
+fn optimum<U: Unit>(under_test: &UnderTest<U>, method: Method) -> Option<Optimum> {
+    Search { method, under_test, truth: &under_test.truth }.run()
 }
 
-struct Search<'a, L: Law> {
+struct Search<'a, U: Unit> {
     method: Method,
-    under_test: &'a dyn PlantUnderTest<Law = L>,
-    truth: &'a Truth<L>,
+    under_test: &'a UnderTest<U>,
+    truth: &'a Truth<U::Law>,
 }
 
 /// A point of the search: P, I or D, and the outer P.
 type Point = [f64; 3];
 
-impl<L: Law> Search<'_, L> {
+impl<U: Unit> Search<'_, U> {
     fn gains(&self, point: &Point) -> Gains {
         let [a, b, c] = *point;
         match self.method {
@@ -165,12 +81,16 @@ impl<L: Law> Search<'_, L> {
 
     fn stable(&self, point: &Point) -> bool {
         // The rounded QPPS is nothing beside the rounding of the gains.
-        let gains = self.under_test.rounded(&self.gains(point));
+        let gains = self.gains(point);
+        let law = &self.truth.law;
+        let registers = U::registers(law, &gains, self.truth.qpps);
+        let gains = law.gains(&registers, self.truth.qpps, gains.position.is_some());
         self.truth.nominal.spectral_radius(&gains, self.truth.qpps) < 1.0
     }
 
     fn cost(&self, point: &Point) -> (f64, f64) {
-        let outcome = self.under_test.outcome(self.method, &self.gains(point));
+        let registers = U::registers(&self.truth.law, &self.gains(point), self.truth.qpps);
+        let outcome = U::trial(self.under_test, self.method, &registers);
         let cap = if self.method == Method::Velocity { 0.25 } else { 0.08 };
         let mut cost = cost(self.method, &outcome);
         if outcome.score.overshoot > cap {

@@ -1,14 +1,10 @@
-//! The motors of the benchmark: eight kinds of machines, their figures drawn log-uniformly from the ranges of the field.
+//! The motors of the benchmark: kinds of machines, their figures drawn log-uniformly from the ranges that a family gives.
 
-use brushwork_mcp_sim::controller::{Controller, ControllerConfig};
-use brushwork_mcp_sim::motion::{ControlLaw, VelocityEstimate};
-use brushwork_mcp_sim::settings::Settings;
 use brushwork_plant::world::{Wiring, WorldParams};
 use brushwork_plant::{
     AxisParams, BoardParams, CouplingParams, Datasheet, EncoderKind, EncoderParams, GearParams, ShaftSide,
     SupplyParams,
 };
-use brushwork_values::Motor;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use serde::{Deserialize, Serialize};
@@ -57,28 +53,6 @@ pub(crate) struct KindRow {
     backlash_turns: (f64, f64),
 }
 
-const KINDS: [KindRow; 8] = [
-    row(Kind::Gearmotor, 12.0, (8e3, 13e3), (30.0, 90.0), 64.0, 6.0, 30.0, 0.2, 0.0, (0.0, 0.0)),
-    row(Kind::RoverWheel, 12.0, (2e3, 9e3), (60.0, 250.0), 1632.0, 12.0, 1.0, 0.0, 0.0, (0.0, 0.0)),
-    row(Kind::RobotBase, 24.0, (20e3, 80e3), (120.0, 600.0), 4096.0, 40.0, 1.0, 0.0, 0.0, (0.0, 0.0)),
-    row(Kind::CorelessServo, 12.0, (100e3, 300e3), (6.0, 20.0), 2000.0, 4.0, 1.0, 0.0, 0.0, (0.0, 0.0)),
-    row(Kind::LinearActuator, 12.0, (400.0, 1500.0), (15.0, 50.0), 48.0, 8.0, 20.0, 0.0, 0.0, (0.0, 0.0)),
-    row(Kind::Flywheel, 24.0, (10e3, 60e3), (700.0, 2500.0), 2048.0, 30.0, 1.0, 0.0, 0.0, (0.0, 0.0)),
-    row(Kind::Steering, 12.0, (1.5e3, 5e3), (40.0, 150.0), 4096.0, 10.0, 50.0, 1.0, 1.0, (3e-4, 2e-3)),
-    row(Kind::ArmJoint, 24.0, (10e3, 50e3), (30.0, 120.0), 8192.0, 15.0, 20.0, 1.0, 0.5, (1e-4, 1e-3)),
-];
-
-/// Machines with absolute encoders (MCP manual 2.4.3), 4096 counts a turn of the output but for the actuator's.
-const ABSOLUTE_KINDS: [KindRow; 4] = [
-    row(Kind::PotActuator, 24.0, (400.0, 1_200.0), (15.0, 60.0), 100.0, 6.0, 20.0, 0.0, 1.0, (0.0, 0.0)),
-    row(Kind::PotSteering, 12.0, (1.5e3, 6e3), (40.0, 150.0), 4096.0, 10.0, 50.0, 0.0, 1.0, (0.0, 0.0)),
-    row(Kind::PulseJoint, 24.0, (2e3, 9e3), (30.0, 120.0), 4096.0, 12.0, 60.0, 0.0, 1.0, (0.0, 0.0)),
-    row(Kind::Turntable, 12.0, (4e3, 12e3), (60.0, 200.0), 4096.0, 8.0, 30.0, 0.0, 1.0, (0.0, 0.0)),
-];
-/// Noise of their readings, counts, and where they stand at first.
-const ABSOLUTE_NOISE_COUNTS: (f64, f64) = (0.2, 0.8);
-const ABSOLUTE_START_COUNTS: (f64, f64) = (1_200.0, 2_900.0);
-
 #[expect(clippy::too_many_arguments, reason = "a row of the table above, in its order")]
 pub(crate) const fn row(
     kind: Kind,
@@ -121,9 +95,9 @@ pub struct LinkParams {
     pub seed: u64,
 }
 
-/// One plant of the population.
+/// One plant of the population, under a unit of some family.
 #[derive(Clone, Debug)]
-pub struct Specimen {
+pub struct Specimen<U> {
     /// Its number, from 0.
     pub number: usize,
     /// Its kind.
@@ -132,47 +106,31 @@ pub struct Specimen {
     pub axis: AxisParams,
     /// Supply.
     pub supply: SupplyParams,
-    /// The firmware's law.
-    pub law: ControlLaw,
+    /// How its controller is built or set up.
+    pub unit: U,
     /// Current limit, A.
     pub current_limit_amps: f64,
     /// The link.
     pub link: LinkParams,
 }
 
-impl Specimen {
+impl<U> Specimen<U> {
     /// The nominal battery voltage.
     #[must_use]
     pub fn volts(&self) -> f64 {
         self.supply.open_circuit_volts
     }
 
-    /// The controller with this motor on channel 1 and a small one on channel 2.
+    /// The world of a controller with this motor on channel 1 and what `base` has on channel 2.
     #[must_use]
-    pub fn controller_config(&self) -> ControllerConfig {
-        let base = ControllerConfig::default();
-        let world = WorldParams {
-            axes: [self.axis.clone(), base.world.axes[1].clone()],
+    pub fn world(&self, base: &WorldParams) -> WorldParams {
+        WorldParams {
+            axes: [self.axis.clone(), base.axes[1].clone()],
             supply: self.supply,
             board: BoardParams::default(),
             wiring: Wiring::default(),
-            ..base.world.clone()
-        };
-        let mut config = ControllerConfig { world, law: self.law, ..base };
-        config.settings = Some(self.settings(&config));
-        config
-    }
-
-    /// Factory settings but for the current limit, the battery's lower limit and the travel.
-    fn settings(&self, config: &ControllerConfig) -> Settings {
-        let fresh = Controller::new(config.clone()).map(|unit| unit.settings());
-        let mut settings = fresh.expect("every drawn figure is in its range");
-        let motion = &mut settings.motors[Motor::M1.index()].motion;
-        motion.max_current_raw = (self.current_limit_amps * 100.0) as u32;
-        motion.position_min_counts = -2_000_000_000;
-        motion.position_max_counts = 2_000_000_000;
-        settings.battery.main_min_tenths = (self.volts() * 7.0) as u16;
-        settings
+            ..base.clone()
+        }
     }
 
     /// The load torque that a duty of `share` at a standstill balances, at the output shaft.
@@ -186,47 +144,23 @@ impl Specimen {
     }
 }
 
-/// The population of a seed: `n` plants, the kinds in turn.
-#[must_use]
-pub fn population(seed: u64, n: usize) -> Vec<Specimen> {
-    (0..n).map(|number| specimen(seed, number)).collect()
+/// What is drawn of a controller's firmware: its filter of the speed, s, and whether its output comes a tick late.
+pub(crate) type FirmwareDraw = (f64, bool);
+
+/// The draws of plant `number` of a seed.
+pub(crate) fn draw_of(seed: u64, number: usize, stream: u64) -> Draw {
+    let seed = seed.wrapping_mul(1_000_003).wrapping_add(number as u64);
+    Draw(ChaCha8Rng::seed_from_u64(seed ^ stream))
 }
 
-/// Plant `number` of a seed, whatever the size of the population.
-#[must_use]
-pub fn specimen(seed: u64, number: usize) -> Specimen {
-    drawn(&KINDS, seed, number)
-}
-
-/// Plant `number` of a seed, its kind and ranges from `kinds`.
-pub(crate) fn drawn(kinds: &[KindRow], seed: u64, number: usize) -> Specimen {
-    let mut draw = Draw(ChaCha8Rng::seed_from_u64(seed.wrapping_mul(1_000_003).wrapping_add(number as u64)));
-    made(&mut draw, &kinds[number % kinds.len()], number)
-}
-
-/// Machines with absolute encoders, a population of its own: `n` plants, the kinds in turn.
-#[must_use]
-pub fn absolute_population(seed: u64, n: usize) -> Vec<Specimen> {
-    (0..n).map(|number| absolute_specimen(seed, number)).collect()
-}
-
-/// Plant `number` of the absolute population of a seed.
-#[must_use]
-pub fn absolute_specimen(seed: u64, number: usize) -> Specimen {
-    let stream = seed.wrapping_mul(1_000_003).wrapping_add(number as u64) ^ 0xAB50_107E;
-    let mut draw = Draw(ChaCha8Rng::seed_from_u64(stream));
-    let row = &ABSOLUTE_KINDS[number % ABSOLUTE_KINDS.len()];
-    let mut specimen = made(&mut draw, row, number);
-    let is_voltage = matches!(row.kind, Kind::PotActuator | Kind::PotSteering);
-    let encoder = &mut specimen.axis.encoder;
-    encoder.kind = if is_voltage { EncoderKind::Analog } else { EncoderKind::Pulse };
-    encoder.noise_counts = draw.log(ABSOLUTE_NOISE_COUNTS);
-    encoder.start_counts = draw.between(ABSOLUTE_START_COUNTS).floor() + 0.5;
-    encoder.wraps = row.kind == Kind::Turntable;
-    specimen
-}
-
-fn made(draw: &mut Draw, row: &KindRow, number: usize) -> Specimen {
+/// Plant `number`, its kind and ranges from `kinds`, and its unit as the firmware that was drawn makes it.
+pub(crate) fn drawn<U>(
+    draw: &mut Draw,
+    kinds: &[KindRow],
+    number: usize,
+    unit: impl FnOnce(FirmwareDraw) -> U,
+) -> Specimen<U> {
+    let row = &kinds[number % kinds.len()];
     let qpps = draw.log(row.qpps);
     let tau_s = draw.log(row.tau_ms) * 1e-3;
     let stall_amps = row.stall_amps * draw.log((0.6, 1.6));
@@ -280,13 +214,6 @@ fn made(draw: &mut Draw, row: &KindRow, number: usize) -> Specimen {
         internal_ohms: drop * row.volts / stall_amps,
         ..SupplyParams::default()
     };
-    let velocity_estimate = if filter_s > 0.0 {
-        VelocityEstimate::LowPass { time_constant_s: filter_s }
-    } else {
-        VelocityEstimate::LastTick
-    };
-    let law =
-        ControlLaw { velocity_estimate, output_delay_ticks: u8::from(extra_tick), ..ControlLaw::default() };
     let link = LinkParams {
         poll_s: draw.log((0.010, 0.020)),
         jitter_s: draw.log((0.0005, 0.003)),
@@ -294,7 +221,8 @@ fn made(draw: &mut Draw, row: &KindRow, number: usize) -> Specimen {
         loss: draw.between((0.0, 0.02)),
         seed: draw.0.next_u64(),
     };
-    Specimen { number, kind: row.kind, axis, supply, law, current_limit_amps: limit * stall_amps, link }
+    let unit = unit((filter_s, extra_tick));
+    Specimen { number, kind: row.kind, axis, supply, unit, current_limit_amps: limit * stall_amps, link }
 }
 
 /// Draws from ranges.

@@ -15,9 +15,9 @@ const COARSE_COUNTS_PER_S: f64 = 1_500.0;
 
 /// The group of a result that was not accepted: what was measured, and on what; `None` for an accepted one.
 #[must_use]
-pub fn group<L: Law>(
+pub fn group<U, L: Law>(
     method: Method,
-    specimen: &Specimen,
+    specimen: &Specimen<U>,
     truth: &Truth<L>,
     judged: &Judgement,
 ) -> Option<String> {
@@ -41,7 +41,7 @@ pub fn group<L: Law>(
     Some(format!("{measured}, {}", machine(specimen, truth)))
 }
 
-fn machine<L: Law>(specimen: &Specimen, truth: &Truth<L>) -> &'static str {
+fn machine<U, L: Law>(specimen: &Specimen<U>, truth: &Truth<L>) -> &'static str {
     let axis = &specimen.axis;
     let has_backlash = axis.gear.backlash_radians > 0.0;
     match (axis.is_two_mass(), axis.encoder.side) {

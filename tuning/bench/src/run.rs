@@ -1,52 +1,20 @@
 //! Runs the tuner on one plant, in virtual time over the wire, and judges what came out on the true plant.
 
 use crate::bounds::{MOST_MS, most_overshoot};
-use crate::line::SimulatedLine;
-use crate::oracle::{Optimum, cost, trial};
+use crate::optimum::Optimum;
+use crate::oracle::cost;
 use crate::population::Specimen;
-use crate::trial::{Outcome, Registers, linear};
-use crate::truth::Truth;
-use brushwork_mcp_axis::{McpLaw, PacketAxis};
-use brushwork_mcp_sim::controller::Controller;
-use brushwork_plant::EncoderKind;
-use brushwork_tuning::axis::EncoderClass;
+use crate::unit::{Registers, Report, Request, UnderTest, Unit};
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::experiment_guard::GuardOptions;
 use brushwork_tuning::law::Law;
 use brushwork_tuning::linear::{LoopPlant, Margins};
-use brushwork_tuning::report::{self, Verdict};
+use brushwork_tuning::report::Verdict;
 use brushwork_tuning::tune::{self, Excitation, Method, tune};
-use brushwork_values::Motor;
-
-/// What a run is asked for, and what it leaves.
-pub type Request = tune::Request<McpLaw>;
-/// The report of a run.
-pub type Report = report::Report<McpLaw>;
-/// An axis over the simulated machine.
-pub type SimulatedAxis = PacketAxis<SimulatedLine>;
-
-/// The axis of a plant, switched on half a second ago.
-#[must_use]
-pub fn axis_of(specimen: &Specimen) -> SimulatedAxis {
-    let unit = Controller::new(specimen.controller_config()).expect("every drawn figure is in its range");
-    let mut line = SimulatedLine::new(unit, specimen.link);
-    line.idle(std::time::Duration::from_millis(500));
-    PacketAxis::new(line, Motor::M1, encoder_of(specimen))
-}
-
-/// What a person would say of its encoder.
-fn encoder_of(specimen: &Specimen) -> EncoderClass {
-    let encoder = &specimen.axis.encoder;
-    match (encoder.kind, encoder.wraps) {
-        (EncoderKind::Quadrature, _) => EncoderClass::Quadrature,
-        (_, false) => EncoderClass::Absolute,
-        (_, true) => EncoderClass::AbsoluteWrapping,
-    }
-}
 
 /// What the bench asks for.
 #[must_use]
-pub fn request_of<L: Law>(specimen: &Specimen, method: Method) -> tune::Request<L> {
+pub fn request_of<U, L: Law>(specimen: &Specimen<U>, method: Method) -> tune::Request<L> {
     tune::Request {
         method,
         excitation: Excitation::Free,
@@ -57,8 +25,8 @@ pub fn request_of<L: Law>(specimen: &Specimen, method: Method) -> tune::Request<
 
 /// A tuning run of a plant.
 #[must_use]
-pub fn tune_plant(specimen: &Specimen, request: &Request) -> (Report, SimulatedAxis) {
-    let mut axis = axis_of(specimen);
+pub fn tune_plant<U: Unit>(specimen: &Specimen<U>, request: &Request<U>) -> (Report<U>, U::Axis) {
+    let mut axis = U::axis(specimen);
     let report = tune(&mut axis, request);
     (report, axis)
 }
@@ -90,35 +58,38 @@ pub struct Judgement {
     pub good: bool,
 }
 
-/// Judges registers.
-#[must_use]
-pub fn judge(
+/// Margins and largest pole that registers give a loop.
+pub(crate) fn linear<U: Unit>(
+    plant: &LoopPlant,
+    under_test: &UnderTest<U>,
     method: Method,
-    specimen: &Specimen,
-    truth: &Truth,
-    optimum: &Optimum,
-    registers: &Registers,
-) -> Judgement {
-    let of = |plant: &LoopPlant| linear(plant, truth, registers);
-    let outcome = trial(method, specimen, truth, registers);
-    weigh(method, optimum, of(&truth.nominal), truth.varied.each_ref().map(of), &outcome)
+    registers: &Registers<U>,
+) -> (Margins, f64) {
+    let truth = &under_test.truth;
+    let gains = truth.law.gains(registers, truth.qpps, method != Method::Velocity);
+    let qpps = U::held_qpps(registers).unwrap_or(truth.qpps);
+    (plant.margins(&gains, qpps), plant.spectral_radius(&gains, qpps))
 }
 
-/// Judges by margins and largest pole of the true loop, of the loop with less and with more inertia, and by what a trial showed.
+/// Judges registers, by margins and largest pole of the true loop, of the loop with less and with more inertia, and by what a trial
+/// shows.
 #[must_use]
-pub fn weigh(
+pub fn judge<U: Unit>(
     method: Method,
+    under_test: &UnderTest<U>,
     optimum: &Optimum,
-    (margins, radius): (Margins, f64),
-    varied: [(Margins, f64); 2],
-    outcome: &Outcome,
+    registers: &Registers<U>,
 ) -> Judgement {
+    let of = |plant: &LoopPlant| linear(plant, under_test, method, registers);
+    let (margins, radius) = of(&under_test.truth.nominal);
+    let varied = under_test.truth.varied.each_ref().map(of);
+    let outcome = U::trial(under_test, method, registers);
     let stable = radius < 1.0;
     let most = most_overshoot(method);
     let quiet = outcome.duty_rms <= (1.5 * optimum.duty_rms).max(0.12);
     let accept =
         stable && !outcome.hunting && margins.ms <= MOST_MS && outcome.score.overshoot <= most && quiet;
-    let j = cost(method, outcome) / optimum.cost;
+    let j = cost(method, &outcome) / optimum.cost;
     Judgement {
         j,
         stable,
@@ -134,19 +105,12 @@ pub fn weigh(
     }
 }
 
-/// A refusal.
-#[must_use]
-pub fn refusal<L: Law>(report: &report::Report<L>) -> Judgement {
-    let refused = report.causes.first().copied().or(Some(Cause::TooCoarse));
-    Judgement { j: f64::INFINITY, stable: true, refused, ..Judgement::default() }
-}
-
 /// Judges a report.
 #[must_use]
-pub fn judge_report(specimen: &Specimen, truth: &Truth, optimum: &Optimum, report: &Report) -> Judgement {
-    let registers = match (report.verdict, report.proposed.velocity) {
-        (Verdict::Refused, _) | (_, None) => return refusal(report),
-        (_, Some(velocity)) => Registers { velocity, position: report.proposed.position },
-    };
-    judge(report.request.method, specimen, truth, optimum, &registers)
+pub fn judge_report<U: Unit>(under_test: &UnderTest<U>, optimum: &Optimum, report: &Report<U>) -> Judgement {
+    if report.verdict == Verdict::Refused || report.proposed == Registers::<U>::default() {
+        let refused = report.causes.first().copied().or(Some(Cause::TooCoarse));
+        return Judgement { j: f64::INFINITY, stable: true, refused, ..Judgement::default() };
+    }
+    judge(report.request.method, under_test, optimum, &report.proposed)
 }

@@ -1,14 +1,13 @@
 //! The table of the benchmark: our methods and every textbook rule, side by side on the same records.
 
-use crate::cache::{OptimaByPlant, known};
 use crate::faults::{FaultRow, fault_rows};
-use crate::oracle::{Optima, optima, position_optima};
-use crate::population::{Specimen, absolute_population, population};
+use crate::optimum::{Optima as _, OptimaByPlant};
+use crate::oracle::{optima, position_optima};
 pub use crate::quantile::quantile;
 use crate::reject::group;
-use crate::run::{Judgement, Report, Request, judge, judge_report, request_of, tune_plant};
-use crate::trial::Registers;
-use crate::truth::{Truth, truth};
+use crate::run::{Judgement, judge, judge_report, linear, request_of, tune_plant};
+use crate::truth::Truth;
+use crate::unit::{Registers, Report, Request, UnderTest, Unit, population};
 use brushwork_tuning::law::Law;
 use brushwork_tuning::report;
 use brushwork_tuning::rules::{pd_rules, pid_rules, piv_rules, velocity_rules};
@@ -20,14 +19,12 @@ use std::collections::BTreeMap;
 /// Cost that stands for no gains at all.
 const REFUSED_COST: f64 = 1000.0;
 /// The travel window of the identification, s of full speed.
-pub(crate) const WINDOW_S: f64 = 0.2;
+const WINDOW_S: f64 = 0.2;
 
+/// The rule that sets nothing.
+const FACTORY: &str = "factory";
 /// One machine with an absolute encoder for so many others.
 const SHARE_OF_ABSOLUTE: usize = 8;
-
-/// The methods and their names in the table.
-pub const TASKS: [(&str, Method); 4] =
-    [("velocity", Method::Velocity), ("pd", Method::Pd), ("pid", Method::Pid), ("piv", Method::Piv)];
 
 /// One row: shares and overshoot in percent.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -112,86 +109,87 @@ pub struct Table {
 }
 
 /// One plant and all that is known of it.
-pub struct Case {
-    /// The plant.
-    pub specimen: Specimen,
-    /// Its truth.
-    pub truth: Truth,
+pub struct Case<U: Unit> {
+    /// The plant and its truth.
+    pub under_test: UnderTest<U>,
     /// Its optima.
-    pub optima: Optima,
+    pub optima: U::Optima,
 }
 
 /// The plants of a seed with their optima, known ones from the repository.
 #[must_use]
-pub fn cases(seed: u64, plants: usize, fresh: bool) -> Vec<Case> {
-    let cached = if fresh { OptimaByPlant::new() } else { known(seed) };
+pub fn cases<U: Unit>(seed: u64, plants: usize, fresh: bool) -> Vec<Case<U>> {
+    let text = if fresh { "" } else { U::known(seed) };
+    let cached: OptimaByPlant<U::Optima> = serde_json::from_str(text).unwrap_or_default();
     population(seed, plants)
         .into_par_iter()
         .map(|specimen| {
-            let truth = truth(&specimen);
-            let optima = cached.get(&specimen.number).copied().unwrap_or_else(|| optima(&specimen, &truth));
-            Case { specimen, truth, optima }
+            let under_test = UnderTest::new(specimen);
+            let known = cached.get(&under_test.specimen.number).copied();
+            Case { optima: known.unwrap_or_else(|| optima(&under_test)), under_test }
         })
         .collect()
 }
 
 /// The optima of cases, to be kept.
 #[must_use]
-pub fn optima_of(cases: &[Case]) -> OptimaByPlant {
-    cases.iter().map(|case| (case.specimen.number, case.optima)).collect()
+pub fn optima_of<U: Unit>(cases: &[Case<U>]) -> OptimaByPlant<U::Optima> {
+    cases.iter().map(|case| (case.under_test.specimen.number, case.optima)).collect()
 }
 
 /// Runs everything. `faults` leaves the fault runs out when false.
 #[must_use]
-pub fn table(seed: u64, cases: &[Case], faults: bool) -> Table {
+pub fn table<U: Unit>(seed: u64, cases: &[Case<U>], faults: bool) -> Table {
     let mut tasks = BTreeMap::new();
     let mut velocity_reports = Vec::new();
-    for (name, method) in TASKS {
-        let reports: Vec<(Report, f64)> = cases
-            .par_iter()
-            .map(|case| {
-                let (report, axis) = tune_plant(&case.specimen, &request_of(&case.specimen, method));
-                let stall = case.specimen.axis.stall_amps(case.specimen.volts());
-                (report, axis.carrier.truth.peak_amps / stall)
-            })
-            .collect();
-        tasks.insert(name, rows(method, cases, &reports));
-        if method == Method::Velocity {
+    for (name, method) in U::TASKS {
+        let reports = reports(*method, cases);
+        tasks.insert(*name, rows(*method, cases, &reports));
+        if *method == Method::Velocity {
             velocity_reports = reports;
         }
     }
     let mut identification = identification(cases, &velocity_reports);
     identification.ms_varied_p95 = tasks["velocity"].first().map_or(0.0, |row: &Row| row.ms_varied_p95);
-    let plants = || cases.iter().map(|case| case.specimen.clone()).collect::<Vec<_>>();
+    let plants = || cases.iter().map(|case| case.under_test.specimen.clone()).collect::<Vec<_>>();
     let faults = if faults { fault_rows(&plants()) } else { Vec::new() };
-    let absolute = absolute_rows(seed, cases.len() / SHARE_OF_ABSOLUTE);
+    let absolute = absolute_rows::<U>(seed, cases.len() / SHARE_OF_ABSOLUTE);
     Table { seed, plants: cases.len(), tasks, absolute, identification, faults }
+}
+
+/// A run of a method on each plant, with its highest current over the stall current.
+fn reports<U: Unit>(method: Method, cases: &[Case<U>]) -> Vec<(Report<U>, f64)> {
+    let run = |case: &Case<U>| {
+        let specimen = &case.under_test.specimen;
+        let (report, mut axis) = tune_plant(specimen, &request_of(specimen, method));
+        let stall = specimen.axis.stall_amps(specimen.volts());
+        (report, U::line(&mut axis).truth.peak_amps / stall)
+    };
+    cases.par_iter().map(run).collect()
 }
 
 /// The rows of so many machines with absolute encoders. Their optima are worked out each time.
 #[must_use]
-pub fn absolute_rows(seed: u64, plants: usize) -> BTreeMap<&'static str, Vec<Row>> {
-    let worked_out = |specimen: Specimen| {
-        let truth = truth(&specimen);
-        Case { optima: position_optima(&specimen, &truth), truth, specimen }
+pub fn absolute_rows<U: Unit>(seed: u64, plants: usize) -> BTreeMap<&'static str, Vec<Row>> {
+    let Some(specimen) = U::ABSOLUTE else { return BTreeMap::new() };
+    let worked_out = |number| {
+        let under_test = UnderTest::new(specimen(seed, number));
+        Case { optima: position_optima(&under_test), under_test }
     };
-    let cases: Vec<Case> = absolute_population(seed, plants).into_par_iter().map(worked_out).collect();
-    let of = |(name, method): (&'static str, Method)| {
-        let run = |case: &Case| (tune_plant(&case.specimen, &request_of(&case.specimen, method)).0, 0.0);
-        let reports: Vec<(Report, f64)> = cases.par_iter().map(run).collect();
-        (name, rows(method, &cases, &reports))
-    };
-    TASKS.into_iter().filter(|(_, method)| *method != Method::Velocity).map(of).collect()
+    let cases: Vec<Case<U>> = (0..plants).into_par_iter().map(worked_out).collect();
+    let of =
+        |(name, method): &(&'static str, Method)| (*name, rows(*method, &cases, &reports(*method, &cases)));
+    U::TASKS.iter().filter(|(_, method)| *method != Method::Velocity).map(of).collect()
 }
 
-fn rows(method: Method, cases: &[Case], reports: &[(Report, f64)]) -> Vec<Row> {
+fn rows<U: Unit>(method: Method, cases: &[Case<U>], reports: &[(Report<U>, f64)]) -> Vec<Row> {
     let ours: Vec<Judged> = cases
         .par_iter()
         .zip(reports)
         .filter_map(|(case, (report, _))| {
             let optimum = case.optima.of(method)?;
-            let judged = judge_report(&case.specimen, &case.truth, &optimum, report);
-            Some(Judged::new(method, &case.specimen, &case.truth, judged, report.seconds.1))
+            let judged = judge_report(&case.under_test, &optimum, report);
+            Some(Judged::new(method, &case.under_test, judged, report.seconds.1))
         })
         .collect();
     let mut rows = vec![row("brushwork", ours.iter())];
@@ -209,46 +207,49 @@ fn rows(method: Method, cases: &[Case], reports: &[(Report, f64)]) -> Vec<Row> {
 }
 
 /// What each rule makes of the record of a run.
-fn by_rules(method: Method, case: &Case, report: &Report) -> Option<Vec<(&'static str, Judged)>> {
+fn by_rules<U: Unit>(
+    method: Method,
+    case: &Case<U>,
+    report: &Report<U>,
+) -> Option<Vec<(&'static str, Judged)>> {
     let classic = report.classic?;
     let qpps = report.qpps?;
     let optimum = case.optima.of(method)?;
-    let law = &case.truth.law;
+    let truth = &case.under_test.truth;
+    let law = &truth.law;
     let rules = match method {
         Method::Velocity => velocity_rules(&classic, law, qpps),
         Method::Pd => pd_rules(&classic, law, qpps),
         Method::Pid => pid_rules(&classic, law, qpps),
         Method::Piv => piv_rules(&classic, law, qpps),
     };
-    let judged = rules.into_iter().map(|(name, gains)| {
-        let registers = Registers::of(&gains, qpps, &case.truth);
-        let judged = judge(method, &case.specimen, &case.truth, &optimum, &registers);
-        (name, Judged::new(method, &case.specimen, &case.truth, judged, report.seconds.0))
+    let factory = U::factory(truth, method).map(|registers| (FACTORY, registers));
+    let of_rules = rules
+        .into_iter()
+        .filter(|(name, _)| factory.is_none() || *name != FACTORY)
+        .map(|(name, gains)| (name, U::registers(law, &gains, qpps)));
+    let judged = factory.into_iter().chain(of_rules).map(|(name, registers)| {
+        let judged = judge(method, &case.under_test, &optimum, &registers);
+        (name, Judged::new(method, &case.under_test, judged, report.seconds.0))
     });
     Some(judged.collect())
 }
 
 /// A judgement, the length of its run, and its group if it was not accepted.
-pub(crate) struct Judged {
+struct Judged {
     result: Judgement,
     seconds: f64,
     reject: Option<String>,
 }
 
 impl Judged {
-    pub(crate) fn new<L: Law>(
-        method: Method,
-        specimen: &Specimen,
-        truth: &Truth<L>,
-        result: Judgement,
-        seconds: f64,
-    ) -> Self {
-        let reject = group(method, specimen, truth, &result);
+    fn new<U: Unit>(method: Method, under_test: &UnderTest<U>, result: Judgement, seconds: f64) -> Self {
+        let reject = group(method, &under_test.specimen, &under_test.truth, &result);
         Self { result, seconds, reject }
     }
 }
 
-pub(crate) fn row<'a>(method: &str, judged: impl Iterator<Item = &'a Judged>) -> Row {
+fn row<'a>(method: &str, judged: impl Iterator<Item = &'a Judged>) -> Row {
     let all: Vec<&Judged> = judged.collect();
     let percent = |of: fn(&Judgement) -> bool| {
         100.0 * all.iter().filter(|j| of(&j.result)).count() as f64 / all.len().max(1) as f64
@@ -274,17 +275,19 @@ pub(crate) fn row<'a>(method: &str, judged: impl Iterator<Item = &'a Judged>) ->
     }
 }
 
-fn identification(cases: &[Case], reports: &[(Report, f64)]) -> Identification {
-    let found = || cases.iter().zip(reports).map(|(case, (report, peak))| (&case.truth, report, *peak));
-    let ms = cases.iter().zip(reports).filter_map(|(c, (r, _))| {
-        let registers = Registers { velocity: r.proposed.velocity?, position: None };
-        let (margins, _) = crate::trial::linear(&c.truth.nominal, &c.truth, &registers);
-        Some((margins.ms - r.design?.ms).abs())
+fn identification<U: Unit>(cases: &[Case<U>], reports: &[(Report<U>, f64)]) -> Identification {
+    let found =
+        || cases.iter().zip(reports).map(|(case, (report, peak))| (&case.under_test.truth, report, *peak));
+    let ms = cases.iter().zip(reports).filter_map(|(case, (report, _))| {
+        let under_test = &case.under_test;
+        let proposed = Some(&report.proposed).filter(|proposed| **proposed != Registers::<U>::default())?;
+        let (margins, _) = linear(&under_test.truth.nominal, under_test, Method::Velocity, proposed);
+        Some((margins.ms - report.design?.ms).abs())
     });
     window_summary(identification_of(found(), &ms.collect::<Vec<_>>()), &window_runs(cases))
 }
 
-pub(crate) fn error_percent(got: f64, wanted: f64) -> f64 {
+fn error_percent(got: f64, wanted: f64) -> f64 {
     100.0 * (got / wanted - 1.0).abs()
 }
 
@@ -293,7 +296,7 @@ type ErrorOf<L> = dyn Fn(&Truth<L>, &report::Report<L>) -> Option<f64>;
 
 /// What the velocity runs found against the truth: (truth, report, peak current over the stall current) of each plant, and how far
 /// the predicted sensitivities were off.
-pub(crate) fn identification_of<'a, L: Law>(
+fn identification_of<'a, L: Law>(
     found: impl Iterator<Item = (&'a Truth<L>, &'a report::Report<L>, f64)>,
     ms: &[f64],
 ) -> Identification {
@@ -330,7 +333,7 @@ pub(crate) fn identification_of<'a, L: Law>(
 }
 
 /// With the runs inside a window: for each the error of QPPS, and the farthest reach over half the window, both in percent.
-pub(crate) fn window_summary(found: Identification, windows: &[(Option<f64>, f64)]) -> Identification {
+fn window_summary(found: Identification, windows: &[(Option<f64>, f64)]) -> Identification {
     let qpps: Vec<f64> = windows.iter().filter_map(|w| w.0).collect();
     let refused = windows.iter().filter(|w| w.0.is_none()).count() as f64 / windows.len().max(1) as f64;
     Identification {
@@ -343,22 +346,20 @@ pub(crate) fn window_summary(found: Identification, windows: &[(Option<f64>, f64
 }
 
 /// For each plant: the error of QPPS found inside the window, and the farthest reach over half the window, both in percent.
-fn window_runs(cases: &[Case]) -> Vec<(Option<f64>, f64)> {
-    cases
-        .par_iter()
-        .map(|case| {
-            let width = (WINDOW_S * case.truth.qpps).round();
-            let request = Request {
-                excitation: Excitation::Window(width),
-                verify: false,
-                ..request_of(&case.specimen, Method::Pd)
-            };
-            let (report, _) = tune_plant(&case.specimen, &request);
-            let error = report.qpps.map(|qpps| 100.0 * (qpps / case.truth.qpps - 1.0).abs());
-            let reach = report.window.map_or(0.0, |window| 200.0 * window.reach_counts / width);
-            (error, reach)
-        })
-        .collect()
+fn window_runs<U: Unit>(cases: &[Case<U>]) -> Vec<(Option<f64>, f64)> {
+    let run = |case: &Case<U>| {
+        let (specimen, qpps) = (&case.under_test.specimen, case.under_test.truth.qpps);
+        let width = (WINDOW_S * qpps).round();
+        let request = Request::<U> {
+            excitation: Excitation::Window(width),
+            verify: false,
+            ..request_of(specimen, Method::Pd)
+        };
+        let (report, _) = tune_plant(specimen, &request);
+        let error = report.qpps.map(|found| error_percent(found, qpps));
+        (error, report.window.map_or(0.0, |window| 200.0 * window.reach_counts / width))
+    };
+    cases.par_iter().map(run).collect()
 }
 
 fn round(value: f64, digits: i32) -> f64 {

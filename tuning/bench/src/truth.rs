@@ -1,8 +1,6 @@
 //! What a plant really is, linearly: the detailed axis, its battery, its firmware's filter and delay, exact at the tick.
 
 use crate::population::Specimen;
-use brushwork_mcp_axis::McpLaw;
-use brushwork_mcp_sim::motion::{GainTiming, VelocityEstimate};
 use brushwork_plant::{AxisParams, ShaftSide};
 use brushwork_tuning::law::Law;
 use brushwork_tuning::linear::{DiscretePlant, LoopPlant};
@@ -14,7 +12,7 @@ const WORKING_DUTY: f64 = 0.4;
 
 /// The true figures of a plant.
 #[derive(Clone, Debug)]
-pub struct Truth<L: Law = McpLaw> {
+pub struct Truth<L: Law> {
     /// Speed per duty, friction aside, counts/s.
     pub gain_counts_per_s: f64,
     /// Mechanical time constant, s.
@@ -31,26 +29,8 @@ pub struct Truth<L: Law = McpLaw> {
     pub varied: [LoopPlant; 2],
 }
 
-/// Works the truth of a plant out.
-#[must_use]
-pub fn truth(specimen: &Specimen) -> Truth {
-    let law = McpLaw {
-        rate_hz: specimen.law.rate_hz,
-        per_tick: specimen.law.gain_timing == GainTiming::PerTick,
-        position_scale: specimen.law.position_gain_scale,
-        feed_forward: specimen.law.feed_forward,
-    };
-    let filter_s = match specimen.law.velocity_estimate {
-        VelocityEstimate::LowPass { time_constant_s } => time_constant_s,
-        VelocityEstimate::LastTick => 0.0,
-        VelocityEstimate::MovingAverage { ticks } => 0.5 * f64::from(ticks.saturating_sub(1)) * law.tick_s(),
-    };
-    let lag = Lag { filter_s, delay_ticks: f64::from(specimen.law.output_delay_ticks) };
-    truth_under(specimen, law, lag)
-}
-
 /// The truth of a plant under a law with a lag.
-pub(crate) fn truth_under<L: Law>(specimen: &Specimen, law: L, lag: Lag) -> Truth<L> {
+pub(crate) fn truth_under<U, L: Law>(specimen: &Specimen<U>, law: L, lag: Lag) -> Truth<L> {
     let axis = &specimen.axis;
     let volts = specimen.volts();
     let step = axis.steady_counts_per_second(volts) - axis.steady_counts_per_second(0.9 * volts);
@@ -67,7 +47,7 @@ pub(crate) fn truth_under<L: Law>(specimen: &Specimen, law: L, lag: Lag) -> Trut
 }
 
 /// Steady speed at full duty with the battery sagging under the running current.
-pub(crate) fn full_speed(specimen: &Specimen) -> f64 {
+pub(crate) fn full_speed<U>(specimen: &Specimen<U>) -> f64 {
     let axis = &specimen.axis;
     let motor = &axis.motor;
     let mut volts = specimen.volts();
@@ -80,7 +60,7 @@ pub(crate) fn full_speed(specimen: &Specimen) -> f64 {
 }
 
 /// The axis from duty to counts over one tick, with every inertia scaled.
-fn discrete(specimen: &Specimen, inertia: f64, tick_s: f64) -> DiscretePlant {
+fn discrete<U>(specimen: &Specimen<U>, inertia: f64, tick_s: f64) -> DiscretePlant {
     let axis = &specimen.axis;
     let (a, b, c) =
         if axis.is_two_mass() { two_mass(specimen, axis, inertia) } else { rigid(specimen, axis, inertia) };
@@ -98,12 +78,12 @@ fn discrete(specimen: &Specimen, inertia: f64, tick_s: f64) -> DiscretePlant {
 
 type Continuous = (DMatrix<f64>, DVector<f64>, DVector<f64>);
 
-fn ohms(specimen: &Specimen) -> f64 {
+fn ohms<U>(specimen: &Specimen<U>) -> f64 {
     specimen.axis.motor.armature_ohms + WORKING_DUTY * WORKING_DUTY * specimen.supply.internal_ohms
 }
 
 /// States: current, motor speed, motor angle.
-fn rigid(specimen: &Specimen, axis: &AxisParams, inertia: f64) -> Continuous {
+fn rigid<U>(specimen: &Specimen<U>, axis: &AxisParams, inertia: f64) -> Continuous {
     let m = &axis.motor;
     let (l, j) = (m.armature_henries.max(1e-6), inertia * axis.total_inertia_kilogram_square_metres());
     let (kt, ke) = (m.torque_constant_newton_metres_per_amp, m.back_emf_volts_per_radian_per_second);
@@ -118,7 +98,7 @@ fn rigid(specimen: &Specimen, axis: &AxisParams, inertia: f64) -> Continuous {
 }
 
 /// States: current, motor speed, load speed, twist, motor angle.
-fn two_mass(specimen: &Specimen, axis: &AxisParams, inertia: f64) -> Continuous {
+fn two_mass<U>(specimen: &Specimen<U>, axis: &AxisParams, inertia: f64) -> Continuous {
     let m = &axis.motor;
     let n = axis.gear.ratio;
     let l = m.armature_henries.max(1e-6);

@@ -44,15 +44,15 @@ impl MindLine {
     /// The line of a plant, its unit switched on half a second ago.
     #[must_use]
     pub fn new(specimen: &MindSpecimen) -> Self {
-        Self::of(specimen.unit(), specimen)
+        Self::of(specimen.controller(), specimen)
     }
 
     /// The same to a unit that is set up otherwise.
     #[must_use]
     pub fn of(unit: MotionMind, specimen: &MindSpecimen) -> Self {
-        let mut line = SimulatedLine::new(unit, specimen.plant.link);
+        let mut line = SimulatedLine::new(unit, specimen.link);
         line.idle(Duration::from_millis(500));
-        Self { line, bits_per_second: specimen.bits_per_second }
+        Self { line, bits_per_second: specimen.unit.bits_per_second }
     }
 }
 

@@ -1,8 +1,12 @@
-//! The same bench for the Motion Mind 3: motors that suit it, their optima, the table and the faults.
+//! The Motion Mind 3 on the bench: motors that suit it, frames or lines in virtual time, trials of its registers.
 
-mod axis;
-pub mod faults;
 pub mod line;
-pub mod plant_under_test;
 pub mod population;
-pub mod table;
+mod trial;
+mod unit;
+
+use crate::judge::Judge;
+use population::MindSetup;
+
+/// Its bench.
+pub const JUDGE: Judge = Judge::of::<MindSetup>("Motion Mind 3, frames and lines");

@@ -1,11 +1,9 @@
 //! Motors for a Motion Mind: 12 or 24 V, at most 25 A, encoders that give a loop of 5 ms something to count; and how they are wired.
 
-use crate::population::{Draw, Kind, KindRow, Specimen, drawn, row};
+use crate::population::{Draw, Kind, KindRow, Specimen, draw_of, drawn, row};
 use brushwork_motion_mind_sim::{Mode, MotionMind, MotionMindConfig, Protocol};
 use brushwork_motion_mind_wire::register_number as number;
 use brushwork_motion_mind_wire::{Address, Command, encode_frame, encode_line, function2};
-use brushwork_plant::BoardParams;
-use brushwork_plant::world::{Wiring, WorldParams};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use std::time::Duration;
@@ -28,27 +26,23 @@ const KINDS: [KindRow; 8] = [
     row(Kind::ArmJoint, 24.0, (10e3, 50e3), (30.0, 120.0), 8192.0, 10.0, 20.0, 1.0, 0.5, (1e-4, 1e-3)),
 ];
 
-/// A plant, and how its unit is reached.
-#[derive(Clone, Debug)]
-pub struct MindSpecimen {
-    /// The motor and its link. Its law is that of another family and is not used.
-    pub plant: Specimen,
+/// How a unit is reached.
+#[derive(Clone, Copy, Debug)]
+pub struct MindSetup {
     /// Which protocol the unit is set to.
     pub protocol: Protocol,
     /// Bits per second.
     pub bits_per_second: u32,
 }
 
-/// The population of a seed: `n` plants, the kinds in turn.
-#[must_use]
-pub fn population(seed: u64, n: usize) -> Vec<MindSpecimen> {
-    (0..n).map(|number| specimen(seed, number)).collect()
-}
+/// A plant under a Motion Mind.
+pub type MindSpecimen = Specimen<MindSetup>;
 
 /// Plant `number` of a seed, whatever the size of the population.
 #[must_use]
 pub fn specimen(seed: u64, number: usize) -> MindSpecimen {
-    let mut plant = drawn(&KINDS, seed, number);
+    let fresh = MindSetup { protocol: Protocol::Binary, bits_per_second: 19_200 };
+    let mut plant = drawn(&mut draw_of(seed, number, 0), &KINDS, number, |_| fresh);
     plant.current_limit_amps = plant.current_limit_amps.min(PEAK_AMPS);
     let mut draw = Draw(ChaCha8Rng::seed_from_u64(plant.link.seed ^ 0x4D4D));
     let bits_per_second = [19_200, 38_400, 115_200][draw.one_of(3)];
@@ -61,35 +55,29 @@ pub fn specimen(seed: u64, number: usize) -> MindSpecimen {
         (Protocol::Binary, 19_200) => plant.link.poll_s.max(0.020),
         (Protocol::Binary, _) => plant.link.poll_s,
     };
-    MindSpecimen { plant, protocol, bits_per_second }
+    Specimen { unit: MindSetup { protocol, bits_per_second }, ..plant }
 }
 
 impl MindSpecimen {
     /// The unit with this motor, as its owner has set it up: baud and number::AMPSLIMIT in EEPROM.
     #[must_use]
-    pub fn unit(&self) -> MotionMind {
-        self.unit_in(Mode::SerialPid)
+    pub fn controller(&self) -> MotionMind {
+        self.controller_in(Mode::SerialPid)
     }
 
     /// The same in another mode.
     #[must_use]
-    pub fn unit_in(&self, mode: Mode) -> MotionMind {
+    pub fn controller_in(&self, mode: Mode) -> MotionMind {
         let base = MotionMindConfig::new(mode);
-        let world = WorldParams {
-            axes: [self.plant.axis.clone(), base.world.axes[1].clone()],
-            supply: self.plant.supply,
-            board: BoardParams::default(),
-            wiring: Wiring::default(),
-            ..base.world.clone()
-        };
-        let config = MotionMindConfig { protocol: self.protocol, world, ..base };
+        let world = self.world(&base.world);
+        let config = MotionMindConfig { protocol: self.unit.protocol, world, ..base };
         let mut unit = MotionMind::new(config).expect("every drawn figure is in its range");
-        let baud = match self.bits_per_second {
+        let baud = match self.unit.bits_per_second {
             115_200 => function2::BAUD115200,
             38_400 => function2::BAUD38400,
             _ => 0,
         };
-        let steps = (self.plant.current_limit_amps / AMPS_STEP).round().clamp(1.0, 1023.0);
+        let steps = (self.current_limit_amps / AMPS_STEP).round().clamp(1.0, 1023.0);
         for (register, value) in [(number::FUNCTION2, i64::from(baud)), (number::AMPSLIMIT, steps as i64)] {
             command_unit(&mut unit, &Command::WriteStore { register, value });
             unit.advance(unit.now() + STORE);

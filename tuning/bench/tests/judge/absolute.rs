@@ -1,17 +1,18 @@
 //! Machines with absolute encoders, a population of its own (MCP manual 2.4.3): tuned in position inside one turn, bounded on both
 //! sides; and what runs read off beside the loops: the winding's resistance, the backlash.
 
+use brushwork_mcp_sim::motion::ControlLaw;
 use brushwork_plant::EncoderKind;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::report::Verdict;
 use brushwork_tuning::tune::Method;
-use brushwork_tuning_bench::population::{absolute_specimen, specimen};
+use brushwork_tuning_bench::mcp::population::{absolute_specimen, specimen};
 use brushwork_tuning_bench::run::{request_of, tune_plant};
 use brushwork_tuning_bench::table::absolute_rows;
 
 #[test]
 fn eight_machines_with_absolute_encoders_come_out_as_they_did() {
-    let table = absolute_rows(7, 8);
+    let table = absolute_rows::<ControlLaw>(7, 8);
     assert!(!table.contains_key("velocity"));
     for (task, accept, good, median) in [
         ("pd", (95.0, 100.0), (80.0, 100.0), (0.9, 1.20)),

@@ -3,10 +3,10 @@
 use brushwork_tuning::model::Gains;
 use brushwork_tuning::report::Verdict;
 use brushwork_tuning::tune::{Method, tune};
-use brushwork_tuning_bench::oracle::Optimum;
-use brushwork_tuning_bench::population::specimen;
-use brushwork_tuning_bench::run::{Report, axis_of, judge_report, request_of};
-use brushwork_tuning_bench::truth::truth;
+use brushwork_tuning_bench::mcp::population::specimen;
+use brushwork_tuning_bench::optimum::Optimum;
+use brushwork_tuning_bench::run::{judge_report, request_of};
+use brushwork_tuning_bench::unit::{UnderTest, Unit};
 
 /// Share of replies that are read late, and by how much at the most, s: a machine with more to do than it can.
 const BUSY: (f64, f64) = (0.35, 0.015);
@@ -19,9 +19,9 @@ fn a_busy_host_lowers_no_gains_and_raises_no_alarm() {
     for number in PLANTS {
         let plant = specimen(31, number);
         let costs = [None, Some(BUSY)].map(|late_reads| {
-            let mut axis = axis_of(&plant);
+            let mut axis = Unit::axis(&plant);
             axis.carrier.late_reads = late_reads;
-            let report: Report = tune(&mut axis, &request_of(&plant, Method::Velocity));
+            let report = tune(&mut axis, &request_of(&plant, Method::Velocity));
             println!("plant {number}, {late_reads:?}: {:?} {:?}", report.causes, report.measured);
             assert_ne!(
                 report.verdict,
@@ -29,7 +29,7 @@ fn a_busy_host_lowers_no_gains_and_raises_no_alarm() {
                 "plant {number}, {late_reads:?}: {:?}",
                 report.causes
             );
-            judge_report(&plant, &truth(&plant), &optimum, &report).j
+            judge_report(&UnderTest::new(plant.clone()), &optimum, &report).j
         });
         let ratio = costs[1] / costs[0];
         assert!(ratio < 2.0, "plant {number}: the cost is {ratio:.2} times that of a quiet host");

@@ -4,10 +4,10 @@ use brushwork_tuning::cause::Cause;
 use brushwork_tuning::law::Law;
 use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::tune::{Method, tune};
+use brushwork_tuning_bench::mcp::population::specimen;
 use brushwork_tuning_bench::motion_mind::population::specimen as mind_specimen;
-use brushwork_tuning_bench::motion_mind::table as mind;
-use brushwork_tuning_bench::population::specimen;
-use brushwork_tuning_bench::run::{self, axis_of, request_of};
+use brushwork_tuning_bench::run::request_of;
+use brushwork_tuning_bench::unit::Unit;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use std::time::Duration;
@@ -59,11 +59,11 @@ fn no_refusal_of_a_late_host_names_the_machine() {
     for seed in 0..RUNS {
         let plant = specimen(31, seed as usize % PLANTS);
         let method = [Method::Velocity, Method::Pd, Method::Piv][seed as usize % 3];
-        let mut axis = axis_of(&plant);
+        let mut axis = Unit::axis(&plant);
         let mut draw = ChaCha8Rng::seed_from_u64(seed);
         axis.carrier.stalls = stalls(&mut draw, Duration::from_millis(500));
         let case = format!("seed {seed}, {method:?}, stalls {:?}", axis.carrier.stalls);
-        let report: run::Report = tune(&mut axis, &request_of(&plant, method));
+        let report = tune(&mut axis, &request_of(&plant, method));
         refused += usize::from(assert_blames_no_machine(&report, &case));
         assert!(report.replay().as_ref() == Some(&report), "{case}: the replay differs");
     }
@@ -80,10 +80,10 @@ fn no_refusal_of_a_crowded_host_names_the_machine() {
     for seed in 0..RUNS {
         let plant = specimen(31, seed as usize % PLANTS);
         let method = [Method::Velocity, Method::Pd, Method::Piv][seed as usize % 3];
-        let mut axis = axis_of(&plant);
+        let mut axis = Unit::axis(&plant);
         axis.carrier.late_reads = Some(CROWDED);
         let case = format!("seed {seed}, {method:?}");
-        let report: run::Report = tune(&mut axis, &request_of(&plant, method));
+        let report = tune(&mut axis, &request_of(&plant, method));
         refused += usize::from(assert_blames_no_machine(&report, &case));
     }
     println!("{refused} of {RUNS} were refused");
@@ -96,11 +96,11 @@ fn no_refusal_of_a_late_host_names_the_machine_of_a_motion_mind() {
     for seed in 0..RUNS {
         let plant = mind_specimen(7, seed as usize % PLANTS);
         let method = [Method::Velocity, Method::Pd, Method::Pid][seed as usize % 3];
-        let mut axis = mind::axis_of(&plant);
+        let mut axis = Unit::axis(&plant);
         let mut draw = ChaCha8Rng::seed_from_u64(seed);
         axis.carrier.line.stalls = stalls(&mut draw, Duration::from_millis(500));
         let case = format!("seed {seed}, {method:?}, stalls {:?}", axis.carrier.line.stalls);
-        let report = tune(&mut axis, &mind::request_of(&plant, method));
+        let report = tune(&mut axis, &request_of(&plant, method));
         refused += usize::from(assert_blames_no_machine(&report, &case));
         assert!(report.replay().as_ref() == Some(&report), "{case}: the replay differs");
     }

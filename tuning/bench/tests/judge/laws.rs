@@ -5,16 +5,16 @@ use brushwork_tuning::cause::Cause;
 use brushwork_tuning::model::Gains;
 use brushwork_tuning::report::Verdict;
 use brushwork_tuning::tune::Method;
-use brushwork_tuning_bench::oracle::Optimum;
-use brushwork_tuning_bench::population::{Specimen, specimen};
+use brushwork_tuning_bench::mcp::population::{PacketSpecimen, specimen};
+use brushwork_tuning_bench::optimum::Optimum;
 use brushwork_tuning_bench::run::{judge_report, request_of, tune_plant};
-use brushwork_tuning_bench::truth::truth;
+use brushwork_tuning_bench::unit::UnderTest;
 
 /// A gearmotor, a rover's wheel and a robot's base of seed 101.
 const PLANTS: [usize; 3] = [8, 1, 10];
 
-fn under(number: usize, law: ControlLaw) -> Specimen {
-    Specimen { law, ..specimen(101, number) }
+fn under(number: usize, law: ControlLaw) -> PacketSpecimen {
+    PacketSpecimen { unit: law, ..specimen(101, number) }
 }
 
 fn laws() -> Vec<(&'static str, ControlLaw)> {
@@ -41,8 +41,9 @@ fn each_law_is_found_and_its_gains_hold_on_the_true_plant() {
     for (name, law) in laws() {
         for (number, method) in PLANTS.into_iter().zip([Method::Velocity, Method::Piv, Method::Pd]) {
             let plant = under(number, law);
-            let truth = truth(&plant);
             let (report, _) = tune_plant(&plant, &request_of(&plant, method));
+            let under_test = UnderTest::new(plant);
+            let truth = &under_test.truth;
             let case = format!("{name}, plant {number}, {method:?}: {:?} {:?}", report.causes, report.law);
             assert_ne!(report.verdict, Verdict::Refused, "{case}");
             let found = report.request.law;
@@ -55,7 +56,7 @@ fn each_law_is_found_and_its_gains_hold_on_the_true_plant() {
                 assert_eq!(found.position_scale, truth.law.position_scale, "{case}");
             }
             let optimum = Optimum { cost: 1.0, duty_rms: 0.08, gains: Gains::default() };
-            let judged = judge_report(&plant, &truth, &optimum, &report);
+            let judged = judge_report(&under_test, &optimum, &report);
             assert!(judged.accept, "{case}: {judged:?}");
         }
     }

@@ -1,28 +1,31 @@
 //! Axes that something pulls at all the time: an arm, a slope, a spring. A load that friction holds is no reason to refuse; one that
 //! it does not hold is named.
 
+use brushwork_mcp_axis::McpLaw;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::experiment_guard::GuardOptions;
 use brushwork_tuning::report::Verdict;
-use brushwork_tuning::tune::{Excitation, Method};
-use brushwork_tuning_bench::population::{Specimen, specimen};
-use brushwork_tuning_bench::run::{Report, Request, request_of, tune_plant};
-use brushwork_tuning_bench::truth::truth;
+use brushwork_tuning::tune::{Excitation, Method, Request};
+use brushwork_tuning_bench::mcp::population::{PacketSpecimen, specimen};
+use brushwork_tuning_bench::run::{request_of, tune_plant};
+use brushwork_tuning_bench::unit::Unit;
+
+type Report = brushwork_tuning::report::Report<McpLaw>;
 
 /// Two of each kind, from seed 7.
 const PLANTS: usize = 16;
 
 /// A plant with a constant load, as a share of the torque at stall.
-fn pulled(number: usize, share: f64) -> Specimen {
+fn pulled(number: usize, share: f64) -> PacketSpecimen {
     let mut plant = specimen(7, number);
     plant.axis.load.torque_newton_metres = plant.load_torque(share);
     plant
 }
 
 /// Tunes a position loop in a window of 0.4 s of full speed to either side.
-fn tuned_inside(plant: &Specimen, method: Method) -> Report {
-    let half = (0.4 * truth(plant).gain_counts_per_s) as i64;
-    let usual = request_of(plant, method);
+fn tuned_inside(plant: &PacketSpecimen, method: Method) -> Report {
+    let half = (0.4 * Unit::truth(plant).gain_counts_per_s) as i64;
+    let usual: Request<McpLaw> = request_of(plant, method);
     let guard = GuardOptions { travel: Some((-half, half)), ..usual.guard };
     tune_plant(plant, &Request { excitation: Excitation::Window(2.0 * half as f64), guard, ..usual }).0
 }

@@ -10,9 +10,14 @@ use brushwork_tuning::report::Verdict;
 use brushwork_tuning::tune::{Method, tune};
 use brushwork_tuning_bench::line::Event;
 use brushwork_tuning_bench::motion_mind::line::MindLine;
-use brushwork_tuning_bench::motion_mind::population::{MindSpecimen, specimen};
-use brushwork_tuning_bench::motion_mind::table::{Report, Request, SimulatedMind, axis_of, request_of};
+use brushwork_tuning_bench::motion_mind::population::{MindSetup, MindSpecimen, specimen};
+use brushwork_tuning_bench::run::request_of;
+use brushwork_tuning_bench::unit::{self, Unit};
 use std::time::Duration;
+
+type Report = unit::Report<MindSetup>;
+type Request = unit::Request<MindSetup>;
+type SimulatedMind = MindAxis<MindLine>;
 
 const FUNCTION: u8 = 3;
 const FUNCTION2: u8 = 30;
@@ -30,7 +35,7 @@ fn struck(
     after_s: f64,
     action: WorldAction,
 ) -> (Report, SimulatedMind) {
-    let mut axis = axis_of(plant);
+    let mut axis = Unit::axis(plant);
     let at = unit(&axis).now() + Duration::from_secs_f64(after_s);
     axis.carrier.line.schedule(vec![Event { at, action }]);
     let report = tune(&mut axis, request);
@@ -42,7 +47,7 @@ fn a_limit_or_the_brake_struck_in_a_run_ends_it_by_its_name_with_the_motor_off_a
     let plant = specimen(7, 0);
     let request = request_of(&plant, Method::Velocity);
     for (number, after_s) in [(pin::POSITIVE_LIMIT, 1.6), (pin::NEGATIVE_LIMIT, 3.5), (pin::BRAKE, 2.0)] {
-        let before = unit(&axis_of(&plant)).read_one(FUNCTION);
+        let before = unit(&Unit::axis(&plant)).read_one(FUNCTION);
         let low = WorldAction::SetPin { pin: number, signal: PinSignal::Volts { volts: 0.0 } };
         let (report, axis) = struck(&plant, &request, after_s, low);
         assert_eq!(report.causes, vec![Cause::LimitInput], "pin {number}");
@@ -65,10 +70,10 @@ fn a_bridge_that_got_too_hot_ends_a_run_and_leaves_the_loop_off() {
 fn the_highest_current_of_a_run_is_amps_limit_and_the_users_is_put_back() {
     let plant = specimen(7, 0);
     let request = request_of(&plant, Method::Velocity);
-    let users = unit(&axis_of(&plant)).read_one(AMPSLIMIT);
+    let users = unit(&Unit::axis(&plant)).read_one(AMPSLIMIT);
     let most = 0.02 * users as f64 * 0.8;
     let guard = GuardOptions { max_amps: Some(most), ..request.guard };
-    let mut axis = axis_of(&plant);
+    let mut axis = Unit::axis(&plant);
     let report = tune(&mut axis, &Request { guard, ..request });
     assert_ne!(report.verdict, Verdict::Refused, "{:?}", report.causes);
     let written = axis.carrier.line.sent.iter().any(|bytes| {
@@ -90,7 +95,7 @@ fn pulse_feedback_is_refused_before_anything_moves_and_other_bits_are_set_aside_
         (function2::NEWVELMODE, None),
         (function2::FASTPID, None),
     ] {
-        let mut fresh = plant.unit();
+        let mut fresh = plant.controller();
         let word = fresh.read_one(FUNCTION2) | i64::from(bit);
         let write = Command::Write { register: FUNCTION2, value: word };
         fresh.receive(&encode_frame(Address::FACTORY, &write).expect("a word"));
@@ -117,9 +122,9 @@ fn pulse_feedback_is_refused_before_anything_moves_and_other_bits_are_set_aside_
 fn a_host_that_dies_at_any_moment_leaves_a_motor_that_stands_soon_by_the_fence() {
     let plant = specimen(7, 1);
     let request = request_of(&plant, Method::Velocity);
-    let whole_s = tune(&mut axis_of(&plant), &request).seconds.1;
+    let whole_s = tune(&mut Unit::axis(&plant), &request).seconds.1;
     for nth in 1..12 {
-        let mut axis = axis_of(&plant);
+        let mut axis = Unit::axis(&plant);
         let dies_at = unit(&axis).now() + Duration::from_secs_f64(whole_s * f64::from(nth) / 12.0);
         axis.carrier.line.dead_at = Some(dies_at);
         tune(&mut axis, &request);
@@ -137,7 +142,7 @@ fn a_host_that_dies_at_any_moment_leaves_a_motor_that_stands_soon_by_the_fence()
 fn what_moves_in_a_run_is_never_written_to_eeprom() {
     for method in [Method::Velocity, Method::Pd, Method::Pid] {
         let plant = specimen(7, 1);
-        let mut axis = axis_of(&plant);
+        let mut axis = Unit::axis(&plant);
         let before = unit(&axis).eeprom_writes();
         tune(&mut axis, &Request { keep: true, ..request_of(&plant, method) });
         assert_eq!(unit(&axis).eeprom_writes(), before, "{method:?}");

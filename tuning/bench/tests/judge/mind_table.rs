@@ -2,6 +2,7 @@
 //!
 //! `brushwork bench tuning --family motion-mind --plants 16 --seed 7` prints the same figures.
 
+use brushwork_motion_mind_axis::MindAxis;
 use brushwork_motion_mind_sim::Mode;
 use brushwork_plant::world::WorldAction;
 use brushwork_tuning::cause::Cause;
@@ -9,13 +10,17 @@ use brushwork_tuning::experiment_guard::GuardOptions;
 use brushwork_tuning::report::Verdict;
 use brushwork_tuning::tune::{Method, tune};
 use brushwork_tuning_bench::line::Event;
-use brushwork_tuning_bench::motion_mind::population::specimen;
-use brushwork_tuning_bench::motion_mind::table::{
-    Report, Request, SimulatedMind, axis_in, axis_of, cases, request_of, table, tune_plant,
-};
-use brushwork_tuning_bench::table::Row;
+use brushwork_tuning_bench::motion_mind::line::MindLine;
+use brushwork_tuning_bench::motion_mind::population::{MindSetup, specimen};
+use brushwork_tuning_bench::run::{request_of, tune_plant};
+use brushwork_tuning_bench::table::{Row, cases, table};
+use brushwork_tuning_bench::unit::{self, Unit};
 use brushwork_values::Motor;
 use std::time::Duration;
+
+type Report = unit::Report<MindSetup>;
+type Request = unit::Request<MindSetup>;
+type SimulatedMind = MindAxis<MindLine>;
 
 /// Lowest and highest figure that is as usual.
 type Range = (f64, f64);
@@ -33,7 +38,7 @@ fn ours(rows: &[Row]) -> &Row {
 
 #[test]
 fn sixteen_plants_come_out_as_they_did() {
-    let table = table(7, &cases(7, 16, false), false);
+    let table = table(7, &cases::<MindSetup>(7, 16, false), false);
     for (task, accept, good, median) in BOUNDS {
         let row = ours(&table.tasks[task]);
         println!("{task}: {row:?}");
@@ -71,18 +76,19 @@ fn every_register_is_as_before_after_a_run_that_keeps_nothing_and_after_one_that
     let registers = |axis: &SimulatedMind| -> Vec<i64> {
         [1, 2, 3, 4, 5, 6, 8, 23, 24, 25, 26, 28, 30].map(|n| axis.carrier.line.unit().read_one(n)).to_vec()
     };
-    let before = registers(&axis_of(&plant));
+    let before = registers(&Unit::axis(&plant));
     let (report, axis) = tune_plant(&plant, &request_of(&plant, Method::Velocity));
     assert_ne!(report.verdict, Verdict::Refused);
     assert_eq!(registers(&axis), before);
-    let limited = Request {
-        guard: GuardOptions { time_limit_s: 2.0, ..request_of(&plant, Method::Pd).guard },
-        ..request_of(&plant, Method::Pd)
-    };
+    let usual: Request = request_of(&plant, Method::Pd);
+    let limited = Request { guard: GuardOptions { time_limit_s: 2.0, ..usual.guard }, ..usual };
     let (report, axis) = tune_plant(&plant, &limited);
     assert_eq!(report.causes, vec![Cause::TimeLimit]);
     assert_eq!(registers(&axis), before, "after the time was up");
-    assert_eq!(axis.carrier.line.unit().eeprom_writes(), axis_of(&plant).carrier.line.unit().eeprom_writes());
+    assert_eq!(
+        axis.carrier.line.unit().eeprom_writes(),
+        Unit::axis(&plant).carrier.line.unit().eeprom_writes()
+    );
 }
 
 #[test]
@@ -106,14 +112,14 @@ fn a_run_that_keeps_its_gains_leaves_them_in_ram_with_the_users_limits() {
 #[test]
 fn a_fault_of_the_machine_leaves_the_loop_off_and_a_reversed_encoder_is_not_driven_away_by_the_old_gains() {
     let plant = specimen(7, 6);
-    let mut axis = axis_of(&plant);
+    let mut axis = Unit::axis(&plant);
     let motor = Motor::M1;
     let reversed = Event { at: Duration::ZERO, action: WorldAction::ReverseEncoder { motor, on: true } };
     axis.carrier.line.schedule(vec![reversed]);
     let report = tune(&mut axis, &request_of(&plant, Method::Velocity));
     assert_eq!(report.causes, vec![Cause::EncoderReversed, Cause::LoopOff]);
     let line = &mut axis.carrier.line;
-    let before = axis_of(&plant).carrier.line.unit().read_one(3);
+    let before = Unit::axis(&plant).carrier.line.unit().read_one(3);
     assert_eq!(line.unit().read_one(3), before | 1 << 14);
     let position = line.unit().read_one(0);
     line.idle(Duration::from_secs(3));
@@ -129,7 +135,7 @@ fn another_mode_and_a_cascade_are_refused_before_anything_moves() {
     assert_eq!(report.causes, vec![Cause::NoSuchLoop]);
     assert_eq!(axis.carrier.line.truth.peak_amps, 0.0);
     for mode in [Mode::Serial, Mode::AnalogPid] {
-        let mut axis = axis_in(&plant, mode);
+        let mut axis = MindAxis::new(MindLine::of(plant.controller_in(mode), &plant));
         let report = tune(&mut axis, &request_of(&plant, Method::Pd));
         assert_eq!(report.causes, vec![Cause::WrongMode], "{mode:?}");
         assert_eq!(axis.carrier.line.truth.peak_amps, 0.0);

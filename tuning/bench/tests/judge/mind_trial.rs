@@ -1,5 +1,6 @@
 //! Registers of a Motion Mind tried by themselves, and redrawn for other levels from the model of a run, with no new experiment.
 
+use brushwork_motion_mind_axis::MindAxis;
 use brushwork_motion_mind_axis::law::{
     MotionMindLaw, MotionMindProposal, MotionMindRegisters, MotionMindWrite, bits,
 };
@@ -9,8 +10,13 @@ use brushwork_tuning::trace::Trace;
 use brushwork_tuning::trial::{Trial, TrialRequest, on_model, run_trial};
 use brushwork_tuning::tune::Method;
 use brushwork_tuning::whatif::{forecast, redesign_registers};
-use brushwork_tuning_bench::motion_mind::population::{MindSpecimen, specimen};
-use brushwork_tuning_bench::motion_mind::table::{Report, SimulatedMind, axis_of, request_of, tune_plant};
+use brushwork_tuning_bench::motion_mind::line::MindLine;
+use brushwork_tuning_bench::motion_mind::population::{MindSetup, MindSpecimen, specimen};
+use brushwork_tuning_bench::run::{request_of, tune_plant};
+use brushwork_tuning_bench::unit::{self, Unit};
+
+type Report = unit::Report<MindSetup>;
+type SimulatedMind = MindAxis<MindLine>;
 
 /// A gearmotor and a wheel: nothing about them is odd.
 const PLANTS: [usize; 2] = [0, 1];
@@ -37,7 +43,7 @@ fn held(axis: &SimulatedMind) -> Vec<i64> {
 
 /// The trial, after which all is as before and nothing turns.
 fn tried(plant: &MindSpecimen, wanted: &TrialRequest<MotionMindLaw>) -> Trial<MotionMindLaw> {
-    let mut axis = axis_of(plant);
+    let mut axis = Unit::axis(plant);
     let (before, stored) = (held(&axis), axis.carrier.line.unit().eeprom_writes());
     let trial = run_trial(&mut axis, wanted);
     assert_eq!(held(&axis), before, "the registers from before are in force again");

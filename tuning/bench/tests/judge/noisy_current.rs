@@ -1,16 +1,16 @@
 //! A current whose readings are noise, as real ones are: a refusal names a cause by the current only where the current is clear of it.
 
-use brushwork_mcp_axis::PacketAxis;
+use brushwork_mcp_axis::{McpLaw, PacketAxis};
 use brushwork_mcp_sim::controller::{Controller, ControllerConfig};
 use brushwork_plant::world::WorldAction;
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::experiment_guard::GuardOptions;
-use brushwork_tuning::report::Verdict;
-use brushwork_tuning::tune::{Method, tune};
+use brushwork_tuning::report::{Report, Verdict};
+use brushwork_tuning::tune::{Method, Request, tune};
 use brushwork_tuning_bench::line::{Event, SimulatedLine};
-use brushwork_tuning_bench::population::specimen;
-use brushwork_tuning_bench::run::{Report, Request, request_of};
+use brushwork_tuning_bench::mcp::population::specimen;
+use brushwork_tuning_bench::run::request_of;
 use brushwork_values::Motor;
 use std::time::Duration;
 
@@ -21,7 +21,7 @@ const PLANTS: usize = 8;
 /// Of the noise.
 const SEED: u64 = 11;
 
-fn run_with(number: usize, at: Duration, action: WorldAction, weighs_evidence: bool) -> Report {
+fn run_with(number: usize, at: Duration, action: WorldAction, weighs_evidence: bool) -> Report<McpLaw> {
     let mut plant = specimen(31, number);
     plant.axis.current_sensor.noise_amps = NOISE_AMPS;
     let config = ControllerConfig { seed: SEED, ..plant.controller_config() };
@@ -30,7 +30,7 @@ fn run_with(number: usize, at: Duration, action: WorldAction, weighs_evidence: b
     line.idle(Duration::from_millis(500));
     line.schedule(vec![Event { at, action }]);
     let mut axis = PacketAxis::new(line, Motor::M1, EncoderClass::Quadrature);
-    let request = request_of(&plant, Method::Velocity);
+    let request: Request<McpLaw> = request_of(&plant, Method::Velocity);
     let guard = GuardOptions { weighs_evidence, ..request.guard };
     tune(&mut axis, &Request { guard, ..request })
 }

@@ -2,8 +2,9 @@
 //!
 //! `brushwork bench tuning --faults` prints the same figures for as many plants as wanted.
 
+use brushwork_mcp_sim::motion::ControlLaw;
 use brushwork_tuning_bench::faults::rows_of;
-use brushwork_tuning_bench::population::population;
+use brushwork_tuning_bench::unit::population;
 
 const CLASSES: [&str; 12] = [
     "encoder_reversed",
@@ -22,7 +23,7 @@ const CLASSES: [&str; 12] = [
 
 #[test]
 fn each_fault_ends_with_the_motor_off_in_time_and_is_named() {
-    let rows = rows_of(&population(5, 16), &CLASSES);
+    let rows = rows_of::<ControlLaw>(&population(5, 16), &CLASSES);
     assert_eq!(rows.len(), CLASSES.len());
     for row in rows {
         println!("{row:?}");
@@ -40,7 +41,7 @@ fn each_fault_ends_with_the_motor_off_in_time_and_is_named() {
 fn each_fault_in_a_trial_ends_with_the_motor_off_and_is_named() {
     let classes =
         ["encoder_lost_in_trial", "stall_in_trial", "motor_opened_in_trial", "encoder_flipped_in_trial"];
-    let rows = rows_of(&population(5, 16), &classes);
+    let rows = rows_of::<ControlLaw>(&population(5, 16), &classes);
     assert_eq!(rows.len(), classes.len());
     for row in rows {
         println!("{row:?}");

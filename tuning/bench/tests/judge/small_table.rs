@@ -2,10 +2,12 @@
 //!
 //! `brushwork bench tuning --plants 24 --seed 7` prints the same figures.
 
-use brushwork_tuning::report::Verdict;
+use brushwork_mcp_axis::McpLaw;
+use brushwork_mcp_sim::motion::ControlLaw;
+use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::tune::Method;
-use brushwork_tuning_bench::population::specimen;
-use brushwork_tuning_bench::run::{Report, request_of, tune_plant};
+use brushwork_tuning_bench::mcp::population::specimen;
+use brushwork_tuning_bench::run::{request_of, tune_plant};
 use brushwork_tuning_bench::table::{Row, cases, table};
 
 /// Lowest and highest figure that is as usual.
@@ -25,7 +27,7 @@ fn ours(rows: &[Row]) -> &Row {
 
 #[test]
 fn twenty_four_plants_come_out_as_they_did() {
-    let table = table(7, &cases(7, 24, false), false);
+    let table = table(7, &cases::<ControlLaw>(7, 24, false), false);
     for (task, accept, good, median) in BOUNDS {
         let row = ours(&table.tasks[task]);
         println!("{task}: {row:?}");
@@ -51,7 +53,7 @@ fn a_replay_of_the_record_gives_the_same_report_to_the_last_bit_also_after_a_fil
         let (report, _) = tune_plant(&plant, &request_of(&plant, method));
         assert_ne!(report.verdict, Verdict::Refused, "plant {number}: {:?}", report.causes);
         let text = serde_json::to_string(&report).expect("a report is plain data");
-        let read: Report = serde_json::from_str(&text).expect("and reads back");
+        let read: Report<McpLaw> = serde_json::from_str(&text).expect("and reads back");
         assert!(read == report, "plant {number}: the file keeps every bit");
         assert!(read.replay().as_ref() == Some(&report), "plant {number}: the replay differs");
     }

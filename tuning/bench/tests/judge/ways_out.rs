@@ -1,12 +1,14 @@
 //! What goes over the wire at the end of a run, byte by byte, on each way out.
 
+use brushwork_mcp_axis::McpLaw;
 use brushwork_plant::world::WorldAction;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::report::Verdict;
-use brushwork_tuning::tune::{Method, tune};
+use brushwork_tuning::tune::{Method, Request, tune};
 use brushwork_tuning_bench::line::Event;
-use brushwork_tuning_bench::population::specimen;
-use brushwork_tuning_bench::run::{Request, axis_of, request_of};
+use brushwork_tuning_bench::mcp::population::specimen;
+use brushwork_tuning_bench::run::request_of;
+use brushwork_tuning_bench::unit::Unit;
 use brushwork_values::Motor;
 use std::time::Duration;
 
@@ -14,9 +16,12 @@ use std::time::Duration;
 const DUTY_ZERO: [u8; 8] = [0x80, 52, 0, 0, 0x00, 0x09, 0xFF, 0xFF];
 
 /// The requests of a run without their checksums, in the order they were sent.
-fn requests(request: &Request, strike: Option<(f64, WorldAction)>) -> (Vec<Vec<u8>>, Option<Cause>, Vec<u8>) {
+fn requests(
+    request: &Request<McpLaw>,
+    strike: Option<(f64, WorldAction)>,
+) -> (Vec<Vec<u8>>, Option<Cause>, Vec<u8>) {
     let plant = specimen(7, 0);
-    let mut axis = axis_of(&plant);
+    let mut axis = Unit::axis(&plant);
     let start = axis.carrier.unit().now();
     if let Some((seconds, action)) = strike {
         axis.carrier.schedule(vec![Event { at: start + Duration::from_secs_f64(seconds), action }]);

@@ -11,9 +11,9 @@ use brushwork_plant::server::measure_speed;
 use brushwork_script::{image, mcl};
 use brushwork_values::Motor;
 
-use super::Effort;
-use super::figure::{Figure, Target};
-use super::spread::median;
+use super::super::Effort;
+use super::super::figure::{Figure, Target};
+use super::super::spread::median;
 
 /// Times real time.
 const REQUIRED: f64 = 500.0;

@@ -12,12 +12,12 @@ use brushwork_mcp_wire::packet_serial::{Generation, number};
 use crossbeam_channel::{Receiver, bounded};
 use egui::Key;
 
-use super::Effort;
-use super::figure::{Figure, Target};
-use super::headless::{Headless, key_event};
+use super::super::Effort;
+use super::super::figure::{Figure, Target};
+use super::super::headless::{Headless, key_event};
+use super::super::spread::{percentile, scattered};
+use super::super::tap::Noted;
 use super::rig::Rig;
-use super::spread::{percentile, scattered};
-use super::tap::Noted;
 use brushwork_cli::interrupt::Interrupt;
 use brushwork_core::keep::{Keeping, Store};
 use brushwork_core::session::SessionError;

@@ -5,11 +5,11 @@ use std::time::{Duration, Instant};
 use brushwork_link::device::Event;
 use brushwork_mcp_wire::packet_serial::Generation;
 
-use super::Effort;
-use super::figure::{Figure, Target};
+use super::super::Effort;
+use super::super::figure::{Figure, Target};
+use super::super::spread::{median, range};
+use super::super::tap::Noted;
 use super::rig::Rig;
-use super::spread::{median, range};
-use super::tap::Noted;
 use brushwork_cli::interrupt::Interrupt;
 
 /// Bits a byte takes on the wire: start, eight data bits, stop.

@@ -12,7 +12,7 @@ use brushwork_mcp_wire::packet_serial::{Address, Generation};
 use brushwork_plant::machine::StreamIndex;
 use brushwork_plant::server::{Endpoint, Server, ServerOptions, SimHandle};
 
-use super::tap::{Log, Tap};
+use super::super::tap::{Log, Tap};
 use brushwork_cli::interrupt::Interrupt;
 
 /// The stream that is served: one whose rate counts.
