@@ -5,7 +5,7 @@ use egui::{
     Align2, Color32, FontId, Rangef, Rect, Role, Sense, TextStyle, Ui, UiBuilder, Vec2, WidgetInfo, vec2,
 };
 use egui_plot::{
-    AxisHints, CoordinatesFormatter, Corner, GridInput, GridMark, LineStyle, Plot, PlotPoint, PlotUi,
+    AxisHints, CoordinatesFormatter, Corner, GridInput, GridMark, LineStyle, Plot, PlotPoint, PlotUi, Text,
 };
 
 use crate::theme::Palette;
@@ -138,7 +138,6 @@ pub fn chart_ui(ui: &mut Ui, name: &str, axes: (Axis, Axis), lines: &[Line], emp
     let spoken = if names.is_empty() { name.to_owned() } else { format!("{name}: {}", names.join(", ")) };
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &spoken));
     let frame = Rect::from_min_max(outer.min + vec2(0.0, ABOVE), outer.max - vec2(RIGHT, 0.0));
-    names_ui(ui, frame, axes.1, lines);
     let mut inside = ui.new_child(UiBuilder::new().max_rect(frame));
     inside.style_mut().text_styles.insert(TextStyle::Monospace, FontId::monospace(FIGURE + 0.5));
     // The values stand where the pointer is not.
@@ -153,12 +152,7 @@ pub fn chart_ui(ui: &mut Ui, name: &str, axes: (Axis, Axis), lines: &[Line], emp
             add(plot, axes, line);
         }
     });
-    let over = ui.painter().with_clip_rect(*shown.transform.frame());
-    for mark in lines.iter().filter(|line| line.look == Look::Mark) {
-        let first = PlotPoint::new(axes.0.place(mark.points[0][0]), axes.1.place(mark.points[0][1]));
-        let at = shown.transform.position_from_point(&first) + vec2(4.0, -2.0);
-        over.text(at, Align2::LEFT_BOTTOM, &mark.name, FontId::proportional(FIGURE), mark.color);
-    }
+    names_ui(ui, shown.response.rect, axes.1, lines);
     if lines.iter().all(|line| line.points.is_empty() || line.look == Look::Mark) {
         let (place, font) = (shown.response.rect, FontId::proportional(13.0));
         let text = ui.painter().layout(empty.to_owned(), font, palette.weak_text, place.width() - 24.0);
@@ -198,12 +192,13 @@ fn plot<'a>(name: &str, (x, y): (Axis, Axis), palette: &Palette) -> Plot<'a> {
 }
 
 /// What the plot shows upwards, and the lines' names with samples, the topmost line first.
-fn names_ui(ui: &Ui, frame: Rect, y: Axis, lines: &[Line]) {
+fn names_ui(ui: &Ui, plot: Rect, y: Axis, lines: &[Line]) {
     let (palette, painter) = (Palette::of(ui), ui.painter());
     let font = FontId::proportional(FIGURE + 0.5);
     let y_name = [y.name, y.unit].join(" ");
-    let from = frame.left_top() + vec2(LEFT, -2.0);
-    let used = painter.text(from, Align2::LEFT_BOTTOM, y_name.trim(), font.clone(), palette.text);
+    let above = vec2(0.0, 2.0);
+    let used =
+        painter.text(plot.left_top() - above, Align2::LEFT_BOTTOM, y_name.trim(), font.clone(), palette.text);
     let mut legend = LayoutJob::default();
     for line in lines.iter().rev().filter(|line| line.is_in_legend()) {
         let (_, _, opacity, sample) = line.look.drawn();
@@ -211,9 +206,9 @@ fn names_ui(ui: &Ui, frame: Rect, y: Axis, lines: &[Line]) {
         legend.append(sample, 12.0, TextFormat::simple(FontId::monospace(FIGURE), color));
         legend.append(&line.name, 4.0, TextFormat::simple(font.clone(), palette.text));
     }
-    legend.wrap = TextWrapping::truncate_at_width((frame.right() - used.right()).max(0.0));
+    legend.wrap = TextWrapping::truncate_at_width((plot.right() - used.right()).max(0.0));
     let legend = painter.layout_job(legend);
-    painter.galley(frame.right_top() - legend.size() - vec2(0.0, 2.0), legend, palette.text);
+    painter.galley(plot.right_top() - legend.size() - above, legend, palette.text);
 }
 
 fn add(plot: &mut PlotUi<'_>, (x, y): (Axis, Axis), line: &Line) {
@@ -224,9 +219,18 @@ fn add(plot: &mut PlotUi<'_>, (x, y): (Axis, Axis), line: &Line) {
     let place = |[at, value]: &[f64; 2]| [x.place(*at), y.place(*value).clamp(y.low - far, y.high + far)];
     // What is no number leaves a gap.
     for part in line.points.split(|point| !(point[0].is_finite() && point[1].is_finite())) {
+        let points: Vec<[f64; 2]> = part.iter().map(place).collect();
+        if let Some([x, y]) = points.first().filter(|_| line.look == Look::Mark) {
+            let in_size = |size| TextFormat::simple(FontId::proportional(size), color);
+            let mut word = LayoutJob::default();
+            word.append(&line.name, 4.0, in_size(FIGURE));
+            // A low row below lifts the word off its line.
+            word.append("\n ", 0.0, in_size(2.0));
+            plot.text(Text::new("", PlotPoint::new(*x, *y), word).anchor(Align2::LEFT_BOTTOM).color(color));
+        }
         // A band instead of a line would fill the steps of a staircase.
-        let drawn = egui_plot::Line::new("", part.iter().map(place).collect::<Vec<_>>()).allow_band(false);
-        plot.line(drawn.width(width).style(style).color(color).allow_hover(false));
+        let drawn = egui_plot::Line::new("", points).allow_band(false).allow_hover(false);
+        plot.line(drawn.width(width).style(style).color(color));
     }
 }
 
