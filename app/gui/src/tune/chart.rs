@@ -1,17 +1,23 @@
 //! A small chart: lines over a grid with figures, a legend, and the values under the pointer.
 
+use egui::text::{LayoutJob, TextFormat, TextWrapping};
 use egui::{
-    Align2, Color32, FontFamily, FontId, Pos2, Rect, Response, Role, Sense, Shape, Stroke, StrokeKind, Ui,
-    WidgetInfo, pos2, vec2,
+    Align2, Color32, FontId, Rangef, Rect, Role, Sense, TextStyle, Ui, UiBuilder, Vec2, WidgetInfo, vec2,
+};
+use egui_plot::{
+    AxisHints, CoordinatesFormatter, Corner, GridInput, GridMark, LineStyle, Plot, PlotPoint, PlotUi, Text,
 };
 
 use crate::theme::Palette;
 
-/// Room for the figures at the left and below.
+/// Room for the figures at the left and below, for the names above, and for half of the last figure.
 const LEFT: f32 = 62.0;
 const BELOW: f32 = 18.0;
 const ABOVE: f32 = 16.0;
+const RIGHT: f32 = 14.0;
 const FIGURE: f32 = 10.5;
+/// Least distances of the grid's lines on the screen.
+const APART: [f64; 2] = [70.0, 28.0];
 
 /// How a line is drawn: not by its colour alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,6 +27,21 @@ pub enum Look {
     Dots,
     /// Wide and pale, to lie under another.
     Under,
+    /// What others are measured by: its name stands at its first point and not in the legend.
+    Mark,
+}
+
+impl Look {
+    /// Width, style, opacity, and what stands for it in the legend.
+    fn drawn(self) -> (f32, LineStyle, f32, &'static str) {
+        match self {
+            Self::Solid => (1.8, LineStyle::Solid, 1.0, "━━━"),
+            Self::Dashed => (1.5, LineStyle::Dashed { length: 6.0 }, 1.0, "╍╍╍"),
+            Self::Dots => (1.7, LineStyle::Dotted { spacing: 6.0 }, 1.0, "•••"),
+            Self::Under => (4.5, LineStyle::Solid, 0.55, "▬▬▬"),
+            Self::Mark => (1.3, LineStyle::Dashed { length: 5.0 }, 1.0, ""),
+        }
+    }
 }
 
 /// A line.
@@ -32,7 +53,13 @@ pub struct Line {
     pub look: Look,
 }
 
-/// One axis of a chart.
+impl Line {
+    fn is_in_legend(&self) -> bool {
+        self.look != Look::Mark && !self.points.is_empty() && !self.name.is_empty()
+    }
+}
+
+/// One axis of a chart. Two of the same unit have the same scale.
 #[derive(Clone, Copy, Debug)]
 pub struct Axis {
     pub name: &'static str,
@@ -63,34 +90,32 @@ impl Axis {
         Self::new(name, unit, ((low - room) / step).floor() * step, ((high + room) / step).ceil() * step)
     }
 
-    fn part(&self, value: f64) -> f32 {
-        let part = if self.is_log {
-            (value.max(1e-12).ln() - self.low.ln()) / (self.high.ln() - self.low.ln())
-        } else {
-            (value - self.low) / (self.high - self.low)
-        };
-        // Far outside is as good as outside, and a shape of the painter's must stay finite.
-        part.clamp(-4.0, 5.0) as f32
+    /// Where a value lies in the plot, which knows no logarithms.
+    fn place(&self, value: f64) -> f64 {
+        if self.is_log { value.max(1e-12).log10() } else { value }
     }
 
-    fn value(&self, part: f64) -> f64 {
-        if self.is_log {
-            (self.low.ln() + part * (self.high.ln() - self.low.ln())).exp()
-        } else {
-            self.low + part * (self.high - self.low)
-        }
+    fn value(&self, place: f64) -> f64 {
+        if self.is_log { 10_f64.powf(place) } else { place }
     }
 
-    fn ticks(&self, most: usize) -> Vec<f64> {
-        if self.is_log {
-            let first = self.low.log10().ceil() as i32;
-            let last = self.high.log10().floor() as i32;
-            return (first..=last).map(|power| 10_f64.powi(power)).collect();
-        }
-        let step = tick_step(self.high - self.low, most);
-        let first = (self.low / step).ceil() as i64;
-        let last = (self.high / step + 1e-9).floor() as i64;
-        (first..=last.min(first + 40)).map(|n| n as f64 * step).collect()
+    fn ticks(&self, (low, high): (f64, f64), most: usize) -> Vec<GridMark> {
+        let step = if self.is_log { 1.0 } else { tick_step(high - low, most) };
+        let (first, last) = ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
+        (first..=last.min(first + 40)).map(|n| GridMark { value: n as f64 * step, step_size: step }).collect()
+    }
+
+    fn grid(&self, input: &GridInput, apart: f64) -> Vec<GridMark> {
+        let most = (input.bounds.1 - input.bounds.0) / (input.base_step_size * apart);
+        self.ticks(input.bounds, most.clamp(2.0, 10.0) as usize)
+    }
+
+    /// A tick's figure, with as many digits as the step needs.
+    fn figure(&self, tick: GridMark) -> String {
+        let value = self.value(if tick.value.abs() < tick.step_size * 1e-6 { 0.0 } else { tick.value });
+        let step = if self.is_log { value } else { tick.step_size };
+        let decimals = (-step.abs().max(1e-9).log10().floor()).clamp(0.0, 6.0) as usize;
+        format!("{value:.decimals$}")
     }
 }
 
@@ -98,186 +123,131 @@ impl Axis {
 fn tick_step(span: f64, most: usize) -> f64 {
     let raw = (span / most.max(1) as f64).max(1e-12);
     let power = 10_f64.powf(raw.log10().floor());
-    [1.0, 2.0, 5.0, 10.0]
-        .map(|times| times * power)
-        .into_iter()
-        .find(|step| *step >= raw * 0.999)
-        .unwrap_or(10.0 * power)
+    let steps = [1.0, 2.0, 5.0, 10.0].map(|times| times * power);
+    steps.into_iter().find(|step| *step >= raw * 0.999).unwrap_or(10.0 * power)
 }
 
-/// As many digits as the step needs.
-fn figure(value: f64, step: f64) -> String {
-    let decimals = (-step.abs().max(1e-9).log10().floor()).clamp(0.0, 6.0) as usize;
-    let value = if value.abs() < step * 1e-6 { 0.0 } else { value };
-    format!("{value:.decimals$}")
+/// Draws `lines` in `size`, or says `empty` while there are none. A screen reader says `name`.
+pub fn chart_ui(ui: &mut Ui, name: &str, axes: (Axis, Axis), lines: &[Line], empty: &str, size: Vec2) {
+    if size.y < 1.0 {
+        return;
+    }
+    let palette = Palette::of(ui);
+    let (outer, response) = ui.allocate_exact_size(size.max(vec2(80.0, 40.0)), Sense::hover());
+    let names: Vec<&str> = lines.iter().filter(|l| l.is_in_legend()).map(|l| l.name.as_str()).collect();
+    let spoken = if names.is_empty() { name.to_owned() } else { format!("{name}: {}", names.join(", ")) };
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &spoken));
+    let frame = Rect::from_min_max(outer.min + vec2(0.0, ABOVE), outer.max - vec2(RIGHT, 0.0));
+    let mut inside = ui.new_child(UiBuilder::new().max_rect(frame));
+    inside.style_mut().text_styles.insert(TextStyle::Monospace, FontId::monospace(FIGURE + 0.5));
+    // The values stand where the pointer is not.
+    let is_right = response.hover_pos().is_some_and(|at| at.x > frame.center().x);
+    let corner = if is_right { Corner::LeftTop } else { Corner::RightTop };
+    let plot = plot(name, axes, palette)
+        .coordinates_formatter(corner, CoordinatesFormatter::new(|at, _| read_out(axes, lines, at)));
+    let shown = plot.show(&mut inside, |plot| {
+        plot.set_plot_bounds_x(axes.0.place(axes.0.low)..=axes.0.place(axes.0.high));
+        plot.set_plot_bounds_y(axes.1.place(axes.1.low)..=axes.1.place(axes.1.high));
+        for line in lines {
+            add(plot, axes, line);
+        }
+    });
+    names_ui(ui, shown.response.rect, axes.1, lines);
+    if lines.iter().all(|line| line.points.is_empty() || line.look == Look::Mark) {
+        let (place, font) = (shown.response.rect, FontId::proportional(13.0));
+        let text = ui.painter().layout(empty.to_owned(), font, palette.weak_text, place.width() - 24.0);
+        ui.painter().galley(place.center() - text.size() / 2.0, text, palette.weak_text);
+    }
 }
 
-/// What is drawn.
-pub struct Chart<'a> {
-    /// What a screen reader says of it.
-    pub name: &'a str,
-    pub x: Axis,
-    pub y: Axis,
-    pub lines: &'a [Line],
-    /// Lines across: (value, word).
-    pub levels: &'a [(f64, &'a str)],
-    /// Circles: (center, radius), in the units of the axes.
-    pub circles: &'a [([f64; 2], f64, &'a str)],
-    /// The same length means the same on both axes.
-    pub is_square: bool,
-    /// What stands in it while there is nothing.
-    pub empty: &'a str,
+/// An empty plot that stays where it is, whatever the pointer does on it.
+fn plot<'a>(name: &str, (x, y): (Axis, Axis), palette: &Palette) -> Plot<'a> {
+    let hints = |hints: AxisHints<'a>| {
+        let font = FontId::monospace(FIGURE);
+        hints.tick_label_font(font).tick_label_color(palette.weak_text).label_spacing(Rangef::new(0.0, 1.0))
+    };
+    let with_unit = move |tick: GridMark, shown: &std::ops::RangeInclusive<f64>| {
+        // The last one tells what it is.
+        let is_last = tick.value + 0.999 * tick.step_size > *shown.end();
+        let unit = if x.unit.is_empty() { x.name } else { x.unit };
+        if is_last { format!("{} {unit}", x.figure(tick)) } else { x.figure(tick) }
+    };
+    let plot = Plot::new(name)
+        .sense(Sense::hover())
+        .allow_zoom(false)
+        .allow_scroll(false)
+        .allow_axis_zoom_drag(false)
+        .show_y(false)
+        .cursor_color(palette.weak_text)
+        .min_size(vec2(20.0, 20.0))
+        .grid_spacing(Rangef::new(1.0, 2.0))
+        .grid_color(palette.line.gamma_multiply(0.6))
+        .x_grid_spacer(move |input| x.grid(&input, APART[0]))
+        .y_grid_spacer(move |input| y.grid(&input, APART[1]))
+        .custom_x_axes(vec![hints(AxisHints::new_x().min_thickness(BELOW).formatter(with_unit))])
+        .custom_y_axes(vec![hints(
+            AxisHints::new_y().min_thickness(LEFT).formatter(move |tick, _| y.figure(tick) + " "),
+        )]);
+    if x.unit == y.unit { plot.data_aspect(1.0) } else { plot }
 }
 
-impl Chart<'_> {
-    /// Takes `size` and draws.
-    pub fn ui(&self, ui: &mut Ui, size: egui::Vec2) -> Response {
-        let (outer, response) = ui.allocate_exact_size(size.max(vec2(80.0, 40.0)), Sense::hover());
-        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, self.spoken()));
-        if !ui.is_rect_visible(outer) {
-            return response;
-        }
-        let mut plot = Rect::from_min_max(outer.min + vec2(LEFT, ABOVE), outer.max - vec2(8.0, BELOW));
-        let (mut x, mut y) = (self.x, self.y);
-        if self.is_square {
-            (x, y) = squared(x, y, plot.size());
-        }
-        plot.max = plot.max.max(plot.min + vec2(20.0, 20.0));
-        let frame = Frame { plot, x, y };
-        self.paint_grid(ui, &frame);
-        let painter = ui.painter().with_clip_rect(plot);
-        for (center, radius, word) in self.circles {
-            let color = Palette::of(ui).warning;
-            painter.extend(circle(&frame, *center, *radius, color));
-            let below = frame.at(center[0], center[1] - radius) + vec2(0.0, 2.0);
-            painter.text(below, Align2::CENTER_TOP, *word, FontId::proportional(FIGURE), color);
-        }
-        for line in self.lines {
-            painter.extend(shapes(line, &frame));
-        }
-        self.paint_legend(ui, &frame);
-        if self.lines.iter().all(|line| line.points.is_empty()) {
-            let font = FontId::proportional(13.0);
-            let color = Palette::of(ui).weak_text;
-            let text = ui.painter().layout(self.empty.to_owned(), font, color, plot.width() - 24.0);
-            let at = plot.center() - text.size() / 2.0;
-            ui.painter().galley(at, text, color);
-        }
-        self.pointer_ui(ui, &frame, &response);
-        response
+/// What the plot shows upwards, and the lines' names with samples, the topmost line first.
+fn names_ui(ui: &Ui, plot: Rect, y: Axis, lines: &[Line]) {
+    let (palette, painter) = (Palette::of(ui), ui.painter());
+    let font = FontId::proportional(FIGURE + 0.5);
+    let y_name = [y.name, y.unit].join(" ");
+    let above = vec2(0.0, 2.0);
+    let used =
+        painter.text(plot.left_top() - above, Align2::LEFT_BOTTOM, y_name.trim(), font.clone(), palette.text);
+    let mut legend = LayoutJob::default();
+    for line in lines.iter().rev().filter(|line| line.is_in_legend()) {
+        let (_, _, opacity, sample) = line.look.drawn();
+        let color = line.color.gamma_multiply(opacity);
+        legend.append(sample, 12.0, TextFormat::simple(FontId::monospace(FIGURE), color));
+        legend.append(&line.name, 4.0, TextFormat::simple(font.clone(), palette.text));
     }
+    legend.wrap = TextWrapping::truncate_at_width((plot.right() - used.right()).max(0.0));
+    let legend = painter.layout_job(legend);
+    painter.galley(plot.right_top() - legend.size() - above, legend, palette.text);
+}
 
-    fn spoken(&self) -> String {
-        let names: Vec<&str> =
-            self.lines.iter().filter(|l| !l.points.is_empty()).map(|l| l.name.as_str()).collect();
-        if names.is_empty() { self.name.to_owned() } else { format!("{}: {}", self.name, names.join(", ")) }
+fn add(plot: &mut PlotUi<'_>, (x, y): (Axis, Axis), line: &Line) {
+    let (width, style, opacity, _) = line.look.drawn();
+    let color = line.color.gamma_multiply(opacity);
+    // Far outside is as good as outside, and not as long to dash.
+    let far = 4.0 * (y.high - y.low);
+    let place = |[at, value]: &[f64; 2]| [x.place(*at), y.place(*value).clamp(y.low - far, y.high + far)];
+    // What is no number leaves a gap.
+    for part in line.points.split(|point| !(point[0].is_finite() && point[1].is_finite())) {
+        let points: Vec<[f64; 2]> = part.iter().map(place).collect();
+        if let Some([x, y]) = points.first().filter(|_| line.look == Look::Mark) {
+            let in_size = |size| TextFormat::simple(FontId::proportional(size), color);
+            let mut word = LayoutJob::default();
+            word.append(&line.name, 4.0, in_size(FIGURE));
+            // A low row below lifts the word off its line.
+            word.append("\n ", 0.0, in_size(2.0));
+            plot.text(Text::new("", PlotPoint::new(*x, *y), word).anchor(Align2::LEFT_BOTTOM).color(color));
+        }
+        // A band instead of a line would fill the steps of a staircase.
+        let drawn = egui_plot::Line::new("", points).allow_band(false).allow_hover(false);
+        plot.line(drawn.width(width).style(style).color(color));
     }
+}
 
-    fn paint_grid(&self, ui: &Ui, frame: &Frame) {
-        let palette = Palette::of(ui);
-        let painter = ui.painter();
-        let font = FontId::new(FIGURE, FontFamily::Monospace);
-        painter.rect_filled(frame.plot, 0.0, palette.ground);
-        let thin = Stroke::new(1.0, palette.line.gamma_multiply(0.6));
-        let most_x = (frame.plot.width() / 70.0) as usize;
-        let x_step = tick_step(frame.x.high - frame.x.low, most_x);
-        let ticks = frame.x.ticks(most_x);
-        for (index, value) in ticks.iter().enumerate() {
-            let x = frame.at(*value, frame.y.low).x;
-            painter.vline(x, frame.plot.y_range(), thin);
-            let mut text = figure(*value, if frame.x.is_log { *value } else { x_step });
-            if index + 1 == ticks.len() {
-                // The last one tells what it is.
-                text = format!("{text} {}", if self.x.unit.is_empty() { self.x.name } else { self.x.unit });
-            }
-            let text = painter.layout_no_wrap(text, font.clone(), palette.weak_text);
-            let left = (x - text.size().x / 2.0).min(frame.plot.right() - text.size().x + 6.0);
-            painter.galley(pos2(left, frame.plot.bottom() + 3.0), text, palette.weak_text);
-        }
-        let most_y = ((frame.plot.height() / 28.0) as usize).clamp(2, 8);
-        let y_step = tick_step(frame.y.high - frame.y.low, most_y);
-        for value in frame.y.ticks(most_y) {
-            let y = frame.at(frame.x.low, value).y;
-            painter.hline(frame.plot.x_range(), y, thin);
-            let step = if frame.y.is_log { value } else { y_step };
-            painter.text(
-                pos2(frame.plot.left() - 5.0, y),
-                Align2::RIGHT_CENTER,
-                figure(value, step),
-                font.clone(),
-                palette.weak_text,
-            );
-        }
-        for (value, word) in self.levels {
-            let y = frame.at(frame.x.low, *value).y;
-            if frame.plot.y_range().contains(y) {
-                painter.extend(Shape::dashed_line(
-                    &[pos2(frame.plot.left(), y), pos2(frame.plot.right(), y)],
-                    Stroke::new(1.2, palette.warning),
-                    6.0,
-                    4.0,
-                ));
-                painter.text(
-                    pos2(frame.plot.left() + 5.0, y - 2.0),
-                    Align2::LEFT_BOTTOM,
-                    *word,
-                    FontId::proportional(FIGURE),
-                    palette.warning,
-                );
-            }
-        }
-        painter.rect_stroke(frame.plot, 0.0, Stroke::new(1.0, palette.line), StrokeKind::Inside);
-        let small = FontId::proportional(FIGURE + 0.5);
-        let y_name = [self.y.name, self.y.unit].join(" ");
-        painter.text(
-            pos2(frame.plot.left(), frame.plot.top() - 2.0),
-            Align2::LEFT_BOTTOM,
-            y_name.trim(),
-            small,
-            palette.text,
-        );
+/// The lines' values where the pointer is; where both axes have the same unit, that place.
+fn read_out((x, y): (Axis, Axis), lines: &[Line], at: &PlotPoint) -> String {
+    let here = x.value(at.x);
+    let mut text = format!("{} {} {}", x.name, short(here), x.unit);
+    if x.unit == y.unit {
+        return text + &format!("\n{} {} {}", y.name, short(at.y), y.unit);
     }
-
-    /// Names with samples of their lines, right above the plot.
-    fn paint_legend(&self, ui: &Ui, frame: &Frame) {
-        let palette = Palette::of(ui);
-        let painter = ui.painter();
-        let font = FontId::proportional(FIGURE + 0.5);
-        let mut right = frame.plot.right();
-        for line in self.lines.iter().rev().filter(|line| !line.points.is_empty() && !line.name.is_empty()) {
-            let text = painter.layout_no_wrap(line.name.clone(), font.clone(), palette.text);
-            let width = text.size().x;
-            if right - width - 34.0 < frame.plot.left() + 90.0 {
-                break;
-            }
-            let y = frame.plot.top() - ABOVE / 2.0 - 1.0;
-            painter.galley(pos2(right - width, y - text.size().y / 2.0), text, palette.text);
-            right -= width + 5.0;
-            painter.extend(sample_of(line, pos2(right - 20.0, y), pos2(right, y)));
-            right -= 32.0;
+    for line in lines.iter().filter(|line| line.is_in_legend() && line.look != Look::Dots) {
+        let index = line.points.partition_point(|point| point[0] < here);
+        if let Some(point) = line.points.get(index).filter(|point| index > 0 && point[1].is_finite()) {
+            text += &format!("\n{}: {} {}", line.name, short(point[1]), y.unit);
         }
     }
-
-    fn pointer_ui(&self, ui: &Ui, frame: &Frame, response: &Response) {
-        let Some(at) = response.hover_pos().filter(|at| frame.plot.contains(*at)) else { return };
-        let palette = Palette::of(ui);
-        ui.painter().vline(at.x, frame.plot.y_range(), Stroke::new(1.0, palette.weak_text));
-        let x = frame.x.value(f64::from((at.x - frame.plot.left()) / frame.plot.width()));
-        let mut text = format!("{} {} {}", self.x.name, short(x), self.x.unit);
-        for line in self.lines.iter().filter(|line| line.look != Look::Dots && !line.name.is_empty()) {
-            let index = line.points.partition_point(|point| point[0] < x);
-            if let Some(point) = line.points.get(index).filter(|_| index > 0 && !self.is_square) {
-                text += &format!("\n{}: {} {}", line.name, short(point[1]), self.y.unit);
-            }
-        }
-        let font = FontId::new(FIGURE + 0.5, FontFamily::Monospace);
-        let galley = ui.painter().layout_no_wrap(text, font, palette.text);
-        let beside =
-            if at.x + galley.size().x + 16.0 > frame.plot.right() { -galley.size().x - 10.0 } else { 10.0 };
-        let place = Rect::from_min_size(pos2(at.x + beside, frame.plot.top() + 6.0), galley.size());
-        ui.painter().rect_filled(place.expand(4.0), 3.0, palette.raised);
-        ui.painter().galley(place.min, galley, palette.text);
-    }
+    text
 }
 
 fn short(value: f64) -> String {
@@ -286,63 +256,6 @@ fn short(value: f64) -> String {
         middle if middle >= 10.0 => format!("{value:.1}"),
         _ => format!("{value:.3}"),
     }
-}
-
-struct Frame {
-    plot: Rect,
-    x: Axis,
-    y: Axis,
-}
-
-impl Frame {
-    fn at(&self, x: f64, y: f64) -> Pos2 {
-        pos2(
-            self.plot.left() + self.x.part(x) * self.plot.width(),
-            self.plot.bottom() - self.y.part(y) * self.plot.height(),
-        )
-    }
-}
-
-/// Both axes with the same scale, about their middles.
-fn squared(x: Axis, y: Axis, size: egui::Vec2) -> (Axis, Axis) {
-    let per_point =
-        ((x.high - x.low) / f64::from(size.x.max(1.0))).max((y.high - y.low) / f64::from(size.y.max(1.0)));
-    let widen = |axis: Axis, points: f32| {
-        let (middle, half) = (0.5 * (axis.low + axis.high), 0.5 * per_point * f64::from(points));
-        Axis { low: middle - half, high: middle + half, ..axis }
-    };
-    (widen(x, size.x), widen(y, size.y))
-}
-
-fn shapes(line: &Line, frame: &Frame) -> Vec<Shape> {
-    // What is no number leaves a gap.
-    let is_gap = |point: &[f64; 2]| !(point[0].is_finite() && point[1].is_finite());
-    let parts = line.points.split(is_gap).filter(|part| !part.is_empty());
-    let of_part = |part: &[[f64; 2]]| part.iter().map(|point| frame.at(point[0], point[1])).collect();
-    parts.flat_map(|part| drawn(of_part(part), line.look, line.color)).collect()
-}
-
-fn sample_of(line: &Line, from: Pos2, to: Pos2) -> Vec<Shape> {
-    let middle = from + (to - from) / 2.0;
-    let points = if line.look == Look::Dots { vec![from, middle, to] } else { vec![from, to] };
-    drawn(points, line.look, line.color)
-}
-
-fn drawn(points: Vec<Pos2>, look: Look, color: Color32) -> Vec<Shape> {
-    match look {
-        Look::Solid => vec![Shape::line(points, Stroke::new(1.8, color))],
-        Look::Under => vec![Shape::line(points, Stroke::new(4.5, color.gamma_multiply(0.55)))],
-        Look::Dashed => Shape::dashed_line(&points, Stroke::new(1.5, color), 6.0, 4.0),
-        Look::Dots => points.into_iter().map(|at| Shape::circle_filled(at, 1.7, color)).collect(),
-    }
-}
-
-fn circle(frame: &Frame, center: [f64; 2], radius: f64, color: Color32) -> Vec<Shape> {
-    let around = (0..=72).map(|n| {
-        let angle = f64::from(n) * std::f64::consts::TAU / 72.0;
-        frame.at(center[0] + radius * angle.cos(), center[1] + radius * angle.sin())
-    });
-    Shape::dashed_line(&around.collect::<Vec<_>>(), Stroke::new(1.4, color), 5.0, 4.0)
 }
 
 #[cfg(test)]
@@ -369,8 +282,31 @@ mod tests {
     #[test]
     fn a_logarithmic_axis_has_its_decades_as_ticks() {
         let axis = Axis::new("frequency", "Hz", 0.02, 150.0).log();
-        let ticks: Vec<i64> = axis.ticks(9).iter().map(|tick| (tick * 100.0).round() as i64).collect();
-        assert_eq!(ticks, [10, 100, 1000, 10_000]);
-        assert!((axis.value(f64::from(axis.part(3.0))) - 3.0).abs() < 1e-4);
+        let ticks = axis.ticks((axis.place(axis.low), axis.place(axis.high)), 9);
+        let figures: Vec<String> = ticks.into_iter().map(|tick| axis.figure(tick)).collect();
+        assert_eq!(figures, ["0.1", "1", "10", "100"]);
+        assert!((axis.value(axis.place(3.0)) - 3.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_values_under_the_pointer_are_those_of_the_lines_there() {
+        let line = |name: &str, points: &[[f64; 2]], look| Line {
+            name: name.to_owned(),
+            points: points.to_vec(),
+            color: Color32::WHITE,
+            look,
+        };
+        let axes = (Axis::new("time", "s", 0.0, 2.0), Axis::new("speed", "counts/s", 0.0, 2000.0));
+        let lines = [
+            line("level", &[[0.0, 7.0], [2.0, 7.0]], Look::Mark),
+            line("ended", &[[0.0, 5.0], [0.5, 5.0]], Look::Solid),
+            line("gap", &[[0.0, 5.0], [2.0, f64::NAN]], Look::Dashed),
+            line("measured", &[[0.0, 5.0], [1.0, 1234.5], [2.0, 0.0]], Look::Solid),
+        ];
+        let text = read_out(axes, &lines, &PlotPoint::new(0.75, 0.0));
+        assert_eq!(text, "time 0.750 s\nmeasured: 1234 counts/s");
+        let place = (Axis::new("real", "", -1.0, 1.0), Axis::new("imaginary", "", -1.0, 1.0));
+        let text = read_out(place, &lines, &PlotPoint::new(0.75, -12.34));
+        assert_eq!(text, "real 0.750 \nimaginary -12.3 ");
     }
 }

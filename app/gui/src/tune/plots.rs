@@ -6,7 +6,7 @@ use brushwork_tuning::trace::{Predicted, Stretch};
 use brushwork_tuning::whatif::{LoopPoint, Reply};
 use egui::{Color32, RichText, Ui, vec2};
 
-use super::chart::{Axis, Chart, Line, Look};
+use super::chart::{Axis, Line, Look, chart_ui};
 use super::looked_at::{Kind, View};
 use super::model::Panel;
 use super::run::{Run, SPEED_OVER_S, Shown};
@@ -53,21 +53,14 @@ fn record_ui(ui: &mut Ui, trace: &Trace, which: Loop, end_s: f64, empty: &str) {
         main.insert(0, line("setpoint", setpoints(trace, &whole), palette.traces[0], Look::Dashed));
     }
     let label = format!("Live {name} of the run");
-    chart(ui, &label, (x, y), &main, &[], empty, vec2(room.x, heights[0]));
+    chart_ui(ui, &label, (x, y), &main, empty, vec2(room.x, heights[0]));
     let duty = [line("duty", duties(trace, None), palette.traces[1], Look::Solid)];
-    chart(
-        ui,
-        "Live duty of the run",
-        (x, Axis::new("duty", "%", -110.0, 110.0)),
-        &duty,
-        &[],
-        "",
-        vec2(room.x, heights[1]),
-    );
+    let y = Axis::new("duty", "%", -110.0, 110.0);
+    chart_ui(ui, "Live duty of the run", (x, y), &duty, "", vec2(room.x, heights[1]));
     let amps = trace.points.iter().filter_map(|point| point.amps.map(|amps| (point.t, amps)));
     let current = [line("current", amps.collect(), palette.traces[4], Look::Solid)];
     let y = Axis::around("current", "A", current[0].points.iter().map(|p| p[1]).chain([0.0, 0.5]));
-    chart(ui, "Live current of the run", (x, y), &current, &[], "", vec2(room.x, heights[2]));
+    chart_ui(ui, "Live current of the run", (x, y), &current, "", vec2(room.x, heights[2]));
 }
 
 /// The picture of a result, with what chooses it.
@@ -81,7 +74,7 @@ pub fn result_ui(ui: &mut Ui, panel: &Panel, view: &mut View, which: Loop) {
         let empty = "Nothing tuned yet: predictions and measurements of a run are drawn here.";
         let size = ui.available_size();
         let axes = (Axis::new("time", "s", 0.0, 1.0), Axis::new("", which.unit(), 0.0, 1.0));
-        return chart(ui, "Result of a run", axes, &[], &[], empty, size);
+        return chart_ui(ui, "Result of a run", axes, &[], empty, size);
     };
     if let Some(seen) = &run.seen {
         let empty = "Nothing was measured: it was refused before the motor was driven.";
@@ -117,7 +110,7 @@ fn measured_ui(ui: &mut Ui, run: &Run, which: Loop) {
     let Some(tried) = run.tried.as_ref() else {
         let axes = (Axis::new("time", "s", 0.0, 1.0), Axis::new("", which.unit(), 0.0, 1.0));
         let empty = "No gains were tried on the machine in this run. Verify tries the proposed ones.";
-        return chart(ui, "Measured response", axes, &[], &[], empty, size);
+        return chart_ui(ui, "Measured response", axes, &[], empty, size);
     };
     let (trace, stretch) = (&tried.trace, &tried.stretch);
     let from_s = stretch.from_s;
@@ -126,12 +119,8 @@ fn measured_ui(ui: &mut Ui, run: &Run, which: Loop) {
     let (mut main, mut duty) = (Vec::new(), Vec::new());
     let mut predict = |course: &[Predicted], name: &str, look: Look| {
         let value = |p: &Predicted| if stretch.is_position { p.counts } else { p.speed };
-        main.push(line(
-            name,
-            course.iter().map(|p| (p.t - from_s, value(p))).collect(),
-            palette.accent,
-            look,
-        ));
+        let values = course.iter().map(|p| (p.t - from_s, value(p)));
+        main.push(line(name, values.collect(), palette.accent, look));
         let duties = course.iter().map(|p| (p.t - from_s, 100.0 * p.duty));
         duty.push(line(name, duties.collect(), palette.accent, look));
     };
@@ -140,33 +129,14 @@ fn measured_ui(ui: &mut Ui, run: &Run, which: Loop) {
     main.push(line("setpoint", shifted(setpoints(trace, stretch), from_s), palette.traces[0], Look::Dashed));
     let values = if stretch.is_position { places(trace, Some(stretch)) } else { speeds(trace, stretch) };
     main.push(line("measured", shifted(values, from_s), color, Look::Solid));
-    duty.push(line(
-        "measured",
-        shifted(duties(trace, Some(stretch)), from_s),
-        palette.traces[1],
-        Look::Solid,
-    ));
+    let duties = shifted(duties(trace, Some(stretch)), from_s);
+    duty.push(line("measured", duties, palette.traces[1], Look::Solid));
     let x = Axis::new("time", "s", 0.0, (stretch.to_s - from_s).max(0.1));
-    let lower = lower_height(size.y);
+    let [upper, lower] = heights(size.y);
     let label = format!("Measured {name} over the predicted one");
-    chart(
-        ui,
-        &label,
-        (x, around(name, unit, &main)),
-        &main,
-        &[],
-        "",
-        vec2(size.x, size.y - lower - if lower > 0.0 { 6.0 } else { 0.0 }),
-    );
-    chart(
-        ui,
-        "Measured duty over the predicted one",
-        (x, around("duty", "%", &duty)),
-        &duty,
-        &[],
-        "",
-        vec2(size.x, lower),
-    );
+    chart_ui(ui, &label, (x, around(name, unit, &main)), &main, "", vec2(size.x, upper));
+    let label = "Measured duty over the predicted one";
+    chart_ui(ui, label, (x, around("duty", "%", &duty)), &duty, "", vec2(size.x, lower));
 }
 
 /// Steps or load steps on the model: the considered gains, the present ones, and earlier runs.
@@ -184,27 +154,20 @@ fn replies_ui(ui: &mut Ui, panel: &Panel, run: &Run, which: Loop, load: bool) {
     }
     let x_end = main.iter().filter_map(|line| line.points.last().map(|p| p[0])).fold(0.1, f64::max);
     let x = Axis::new("time", "s", 0.0, x_end);
-    let lower = lower_height(size.y);
+    let [upper, lower] = heights(size.y);
     let name = if which == Loop::Velocity { "speed" } else { "position" };
-    let goal = run.shown.as_ref().map(|shown| (shown.forecast.step.1, "setpoint"));
     let label = if load {
         format!("Predicted {name} under a load step")
     } else {
         format!("Predicted step of the {name}")
     };
     let empty = "There is no model yet: tune first.";
-    let levels: Vec<(f64, &str)> = goal.into_iter().collect();
     let y = around(name, which.unit(), &main);
-    chart(
-        ui,
-        &label,
-        (x, y),
-        &main,
-        &levels,
-        empty,
-        vec2(size.x, size.y - lower - if lower > 0.0 { 6.0 } else { 0.0 }),
-    );
-    chart(ui, "Predicted duty", (x, around("duty", "%", &duty)), &duty, &[], "", vec2(size.x, lower));
+    if let Some(shown) = &run.shown {
+        main.insert(0, level(palette, x, shown.forecast.step.1, "setpoint"));
+    }
+    chart_ui(ui, &label, (x, y), &main, empty, vec2(size.x, upper));
+    chart_ui(ui, "Predicted duty", (x, around("duty", "%", &duty)), &duty, "", vec2(size.x, lower));
 }
 
 fn bode_ui(ui: &mut Ui, panel: &Panel, run: &Run) {
@@ -219,43 +182,33 @@ fn bode_ui(ui: &mut Ui, panel: &Panel, run: &Run) {
     }
     let x = Axis::new("frequency", "Hz", (top_hz * 2e-4).max(0.01), top_hz).log();
     let half = vec2(size.x, (size.y - 6.0) / 2.0);
-    let y = Axis { low: LEAST_GAIN_DB, high: 60.0, ..Axis::new("gain", "dB", 0.0, 0.0) };
+    gain.insert(0, level(palette, x, 0.0, "0 dB"));
+    phase.insert(0, level(palette, x, -180.0, "-180°"));
+    let y = Axis::new("gain", "dB", LEAST_GAIN_DB, 60.0);
     let empty = "There is no model yet: tune first.";
-    chart(ui, "Bode gain of the open loop", (x, y), &gain, &[(0.0, "0 dB")], empty, half);
+    chart_ui(ui, "Bode gain of the open loop", (x, y), &gain, empty, half);
     let y = Axis::new("phase", "degrees", -270.0, 0.0);
-    chart(ui, "Bode phase of the open loop", (x, y), &phase, &[(-180.0, "-180°")], "", half);
+    chart_ui(ui, "Bode phase of the open loop", (x, y), &phase, "", half);
 }
 
 fn nyquist_ui(ui: &mut Ui, panel: &Panel, run: &Run) {
     let palette = Palette::of(ui);
-    let size = ui.available_size();
-    let lines: Vec<Line> = lines_of(panel, run, palette)
-        .map(|(name, shown, color, look)| {
-            let points = shown.frequency.iter().map(|point| point.open);
-            line(&name, points.filter(|open| open.0.hypot(open.1) < 60.0).collect(), color, look)
-        })
-        .collect();
     let goal = run.task().map_or(1.6, |task| task.goal.ms);
-    let word = format!("Ms {goal:.2}");
     // The curve keeps out of the circle about -1 with the radius 1 / Ms.
-    let circles = [([-1.0, 0.0], goal.recip(), word.as_str()), ([-1.0, 0.0], 0.02, "-1")];
-    let chart = Chart {
-        name: "Nyquist plot with the Ms circle",
-        x: Axis::new("real", "", -2.2, 0.8),
-        y: Axis::new("imaginary", "", -1.6, 1.0),
-        lines: &lines,
-        levels: &[],
-        circles: &circles,
-        is_square: true,
-        empty: "There is no model yet: tune first.",
-    };
-    chart.ui(ui, size);
+    let mut lines =
+        vec![circle(palette, goal.recip(), &format!("Ms {goal:.2}")), circle(palette, 0.02, "-1")];
+    lines.extend(lines_of(panel, run, palette).map(|(name, shown, color, look)| {
+        let points = shown.frequency.iter().map(|point| point.open);
+        line(&name, points.filter(|open| open.0.hypot(open.1) < 60.0).collect(), color, look)
+    }));
+    let axes = (Axis::new("real", "", -2.2, 0.8), Axis::new("imaginary", "", -1.6, 1.0));
+    let (name, empty) = ("Nyquist plot with the Ms circle", "There is no model yet: tune first.");
+    chart_ui(ui, name, axes, &lines, empty, ui.available_size());
 }
 
 fn sensitivity_ui(ui: &mut Ui, panel: &Panel, run: &Run) {
     let palette = Palette::of(ui);
-    let size = ui.available_size();
-    let lines: Vec<Line> = lines_of(panel, run, palette)
+    let mut lines: Vec<Line> = lines_of(panel, run, palette)
         .map(|(name, shown, color, look)| {
             line(&name, over_frequency(shown, LoopPoint::sensitivity), color, look)
         })
@@ -267,7 +220,8 @@ fn sensitivity_ui(ui: &mut Ui, panel: &Panel, run: &Run) {
     let x = Axis::new("frequency", "Hz", (top_hz * 2e-4).max(0.01), top_hz).log();
     let y = Axis::new("sensitivity |S|", "", 0.0, (1.15 * top).max(1.8));
     let empty = "There is no model yet: tune first.";
-    chart(ui, "Sensitivity over frequency", (x, y), &lines, &[(goal, &word), (1.0, "")], empty, size);
+    lines.splice(0..0, [level(palette, x, goal, &word), level(palette, x, 1.0, "")]);
+    chart_ui(ui, "Sensitivity over frequency", (x, y), &lines, empty, ui.available_size());
 }
 
 /// Whose gains are drawn: earlier runs first, so that they lie below; then the present ones, then those that are considered.
@@ -309,9 +263,13 @@ fn unwrapped_phase(shown: &Shown) -> Vec<(f64, f64)> {
     phases
 }
 
-/// Height of the duty under another picture; none where there is no room for both.
-fn lower_height(height: f32) -> f32 {
-    if height < ROOM_FOR_DUTY { 0.0 } else { (height * DUTY_SHARE).max(70.0) }
+/// Heights of a picture and of the duty under it, which goes where there is no room for both.
+fn heights(height: f32) -> [f32; 2] {
+    if height < ROOM_FOR_DUTY {
+        return [height, 0.0];
+    }
+    let lower = (height * DUTY_SHARE).max(70.0);
+    [height - lower - 6.0, lower]
 }
 
 fn line(name: &str, points: Vec<(f64, f64)>, color: Color32, look: Look) -> Line {
@@ -323,18 +281,16 @@ fn around(name: &'static str, unit: &'static str, lines: &[Line]) -> Axis {
     Axis::around(name, unit, lines.iter().flat_map(|line| &line.points).map(|point| point[1]))
 }
 
-fn chart(
-    ui: &mut Ui,
-    name: &str,
-    (x, y): (Axis, Axis),
-    lines: &[Line],
-    levels: &[(f64, &str)],
-    empty: &str,
-    size: egui::Vec2,
-) {
-    if size.y >= 1.0 {
-        Chart { name, x, y, lines, levels, circles: &[], is_square: false, empty }.ui(ui, size);
-    }
+/// A line across.
+fn level(palette: &Palette, x: Axis, value: f64, word: &str) -> Line {
+    line(word, vec![(x.low, value), (x.high, value)], palette.warning, Look::Mark)
+}
+
+/// A circle about -1.
+fn circle(palette: &Palette, radius: f64, word: &str) -> Line {
+    let around = (0..=72).map(|n| (f64::from(n) * std::f64::consts::TAU / 72.0).sin_cos());
+    let points = around.map(|(sin, cos)| (radius * sin - 1.0, radius * cos));
+    line(word, points.collect(), palette.warning, Look::Mark)
 }
 
 fn shifted(points: Vec<(f64, f64)>, from_s: f64) -> Vec<(f64, f64)> {

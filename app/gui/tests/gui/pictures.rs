@@ -155,3 +155,39 @@ fn guided_tuning_with_a_refusal_in_the_dark() {
 fn guided_tuning_with_a_refusal_in_the_light() {
     picture(tuning("refused.json", Theme::Light), "refused_light");
 }
+
+#[test]
+fn a_wheel_a_drag_and_a_pinch_leave_a_chart_where_it_is() {
+    let mut bench = tuning("tuned.json", Theme::Dark);
+    bench.harness.set_render_cursor(false);
+    bench.pass_ms(200);
+    let before = bench.harness.render().expect("a picture");
+    let at = egui::pos2(900.0, 450.0);
+    bench.harness.hover_at(at);
+    bench.pass_ms(200);
+    assert!(bench.harness.render().expect("a picture") != before, "the values under the pointer are shown");
+    for button in [egui::PointerButton::Primary, egui::PointerButton::Secondary] {
+        let modifiers = egui::Modifiers::NONE;
+        bench.harness.event(egui::Event::PointerButton { pos: at, button, pressed: true, modifiers });
+        bench.pass_ms(100);
+        bench.harness.hover_at(at + egui::vec2(80.0, 40.0));
+        bench.pass_ms(100);
+        bench.harness.event(egui::Event::PointerButton { pos: at, button, pressed: false, modifiers });
+    }
+    for event in [
+        egui::Event::Zoom(1.5),
+        egui::Event::MouseWheel {
+            unit: egui::MouseWheelUnit::Point,
+            delta: egui::vec2(30.0, -60.0),
+            phase: egui::TouchPhase::Move,
+            source: egui::MouseWheelSource::Wheel,
+            modifiers: egui::Modifiers::NONE,
+        },
+    ] {
+        bench.harness.event(event);
+        bench.pass_ms(200);
+    }
+    bench.harness.event(egui::Event::PointerGone);
+    bench.pass_ms(500);
+    assert!(bench.harness.render().expect("a picture") == before, "the chart has moved");
+}
