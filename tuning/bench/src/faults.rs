@@ -267,10 +267,10 @@ fn run<U: Unit>(class: &Class, subject: &Subject<U>) -> Run {
         }
     };
     let mut axis = match class.fault {
-            Fault::EndStop => U::axis(&with_end_stops(subject)),
-            Fault::Before(_) | Fault::During(_) | Fault::InTrial(_) | Fault::LinkDrop | Fault::Window => {
-                U::axis(&subject.specimen)
-            }
+        Fault::EndStop => U::axis(&with_end_stops(subject)),
+        Fault::Before(_) | Fault::During(_) | Fault::InTrial(_) | Fault::LinkDrop | Fault::Window => {
+            U::axis(&subject.specimen)
+        }
     };
     let line = U::line(&mut axis);
     let start = line.unit().time();

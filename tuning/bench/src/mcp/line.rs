@@ -67,7 +67,10 @@ impl Carrier for SimulatedLine<Controller> {
                 let values = command.reply(values).ok_or(AxisError::NoReply)?;
                 Ok((Exchange { sent, received: self.now }, values))
             }
-            _ => Err(AxisError::NoReply),
+            ReplyProgress::NeedMore { .. }
+            | ReplyProgress::BadCrc { .. }
+            | ReplyProgress::BadAck { .. }
+            | ReplyProgress::Malformed { .. } => Err(AxisError::NoReply),
         }
     }
 
