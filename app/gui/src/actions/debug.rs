@@ -3,101 +3,30 @@
 use brushwork_script::debug::StepKind;
 use egui::{Key, KeyboardShortcut, Modifiers};
 
-use super::{Action, Keys, Menu, Ready, key, place, shift};
+use super::{Action, Keys, Ready, key, shift};
 use crate::command::Command;
 use crate::debugger;
 use crate::debugger::DebugAction;
 use crate::model::Model;
 use crate::model::screen::Screen;
 
-macro_rules! action {
-    ($id:literal, $title:literal, $group:literal, $keys:expr, $help:literal, $ready:expr, $action:expr) => {
-        Action {
-            id: $id,
-            title: $title,
-            place: place(Menu::Debug, $group),
-            keys: $keys,
-            help: $help,
-            ready: $ready,
-            is_on: None,
-            command: |_| Command::Debug($action),
-        }
-    };
-}
-
 pub(super) const ACTIONS: &[Action] = &[
-    action!(
-        "debug.run",
-        "Run or Continue",
-        0,
-        key(Key::F6),
-        "Lets a paused script go on, or starts the program that is in the simulated controller.",
-        not_running,
-        DebugAction::Run
-    ),
-    action!(
-        "debug.pause",
-        "Pause Script",
-        0,
-        ctrl_key(Key::F6),
-        "Stops the script before its next line. The motors go on unless the world is frozen too.",
-        running,
-        DebugAction::Pause
-    ),
-    action!(
-        "debug.step-into",
-        "Step Into",
-        1,
-        key(Key::F11),
-        "Runs one line; a GOSUB leads into its subroutine.",
-        paused,
-        DebugAction::Step(StepKind::Into)
-    ),
-    action!(
-        "debug.step-over",
-        "Step Over",
-        1,
-        key(Key::F12),
-        "Runs one line with the subroutines it calls.",
-        paused,
-        DebugAction::Step(StepKind::Over)
-    ),
-    action!(
-        "debug.step-out",
-        "Step Out",
-        1,
-        shift(Key::F11),
-        "Runs on until the subroutine has returned.",
-        paused,
-        DebugAction::Step(StepKind::Out)
-    ),
-    action!(
-        "debug.run-to-cursor",
-        "Run to Cursor",
-        1,
-        shift(Key::F6),
-        "Runs on to the line of the caret, or the next one that has code.",
-        has_script,
-        DebugAction::RunToCursor
-    ),
-    action!(
-        "debug.breakpoint",
-        "Set or Remove Breakpoint",
-        2,
-        ctrl_key(Key::F8),
-        "Sets a breakpoint at the line of the caret, or takes it away.",
-        on_screen,
-        DebugAction::ToggleBreakpoint
-    ),
-    action!(
-        "debug.clear-breakpoints",
-        "Remove All Breakpoints",
-        2,
-        Keys::None,
-        "Takes away every breakpoint of the program.",
-        on_screen,
-        DebugAction::ClearBreakpoints
-    ),
+    entry!(Debug 0 "debug.run", "Run or Continue", "Lets a paused script go on, or starts the program that is in the simulated controller.",
+        key(Key::F6), not_running, |_| Command::Debug(DebugAction::Run)),
+    entry!(Debug 0 "debug.pause", "Pause Script", "Stops the script before its next line. The motors go on unless the world is frozen too.",
+        ctrl_key(Key::F6), running, |_| Command::Debug(DebugAction::Pause)),
+    entry!(Debug 1 "debug.step-into", "Step Into", "Runs one line; a GOSUB leads into its subroutine.",
+        key(Key::F11), paused, |_| Command::Debug(DebugAction::Step(StepKind::Into))),
+    entry!(Debug 1 "debug.step-over", "Step Over", "Runs one line with the subroutines it calls.",
+        key(Key::F12), paused, |_| Command::Debug(DebugAction::Step(StepKind::Over))),
+    entry!(Debug 1 "debug.step-out", "Step Out", "Runs on until the subroutine has returned.",
+        shift(Key::F11), paused, |_| Command::Debug(DebugAction::Step(StepKind::Out))),
+    entry!(Debug 1 "debug.run-to-cursor", "Run to Cursor", "Runs on to the line of the caret, or the next one that has code.",
+        shift(Key::F6), has_script, |_| Command::Debug(DebugAction::RunToCursor)),
+    entry!(Debug 2 "debug.breakpoint", "Set or Remove Breakpoint", "Sets a breakpoint at the line of the caret, or takes it away.",
+        ctrl_key(Key::F8), on_screen, |_| Command::Debug(DebugAction::ToggleBreakpoint)),
+    entry!(Debug 2 "debug.clear-breakpoints", "Remove All Breakpoints", "Takes away every breakpoint of the program.",
+        Keys::None, on_screen, |_| Command::Debug(DebugAction::ClearBreakpoints)),
 ];
 
 const fn ctrl_key(key: Key) -> Keys {

@@ -2,42 +2,18 @@
 
 use egui::Key;
 
-use super::{Action, Keys, Menu, Ready, connected, ctrl, place};
+use super::{Action, Keys, Ready, connected, ctrl};
 use crate::command::Command;
 use crate::model::Model;
 use crate::model::general::Sheet;
 
 pub(super) const ACTIONS: &[Action] = &[
-    Action {
-        id: "edit.find-setting",
-        title: "Find a Setting…",
-        place: place(Menu::Edit, 9),
-        keys: ctrl(Key::F),
-        help: "Goes to General Settings and to its search field.",
-        ready: connected,
-        is_on: None,
-        command: |_| Command::FindSetting,
-    },
-    Action {
-        id: "edit.revert-settings",
-        title: "Revert All Edits of Settings",
-        place: place(Menu::Edit, 9),
-        keys: Keys::None,
-        help: "Drops every edit of a setting that was not written to the controller.",
-        ready: has_edits,
-        is_on: None,
-        command: |_| Command::RevertSettings,
-    },
-    Action {
-        id: "edit.copy-motor",
-        title: "Copy Motor 1 to Motor 2…",
-        place: place(Menu::Edit, 9),
-        keys: Keys::None,
-        help: "Shows what would make the settings of motor 2 those of motor 1, as edits to be written.",
-        ready: connected,
-        is_on: None,
-        command: |_| Command::OpenSheet(Sheet::CopyMotor),
-    },
+    entry!(Edit 9 "edit.find-setting", "Find a Setting…", "Goes to General Settings and to its search field.",
+        ctrl(Key::F), connected, |_| Command::FindSetting),
+    entry!(Edit 9 "edit.revert-settings", "Revert All Edits of Settings", "Drops every edit of a setting that was not written to the controller.",
+        Keys::None, has_edits, |_| Command::RevertSettings),
+    entry!(Edit 9 "edit.copy-motor", "Copy Motor 1 to Motor 2…", "Shows what would make the settings of motor 2 those of motor 1, as edits to be written.",
+        Keys::None, connected, |_| Command::OpenSheet(Sheet::CopyMotor)),
 ];
 
 fn has_edits(model: &Model) -> Ready {

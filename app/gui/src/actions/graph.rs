@@ -1,6 +1,6 @@
 //! The Graph menu: everything that can be done with the graph of a screen that drives. Its keys work while the graph has the focus.
 
-use super::{Action, Keys, Menu, Ready, place};
+use super::{Action, Keys, Ready};
 use crate::command::Command;
 use crate::graph::GraphAction;
 use crate::graph::trigger::TriggerMode;
@@ -8,16 +8,8 @@ use crate::model::Model;
 
 macro_rules! action {
     ($id:literal, $action:ident $(($mode:path))?, $group:literal, $help:literal) => {
-        Action {
-            id: $id,
-            title: GraphAction::$action $(($mode))?.title(),
-            place: place(Menu::Graph, $group),
-            keys: Keys::None,
-            help: $help,
-            ready: on_a_graph,
-            is_on: None,
-            command: |_| Command::Graph(GraphAction::$action $(($mode))?),
-        }
+        entry!(Graph $group $id, GraphAction::$action $(($mode))?.title(), $help,
+            Keys::None, on_a_graph, |_| Command::Graph(GraphAction::$action $(($mode))?))
     };
 }
 

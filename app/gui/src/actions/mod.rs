@@ -14,6 +14,25 @@ use super::mcl::has_keyboard;
 use super::model::Model;
 use super::model::screen::Screen;
 
+/// An action: menu and group, name, title and help; its keys, when it can be done, its command; when it is on, if it can be on or off.
+macro_rules! entry {
+    ($menu:ident $group:literal $id:literal, $title:expr, $help:literal,
+        $keys:expr, $ready:expr, $command:expr $(, on $is_on:expr)?) => {
+        $crate::actions::Action {
+            id: $id,
+            title: $title,
+            place: $crate::actions::Place { menu: $crate::actions::Menu::$menu, group: $group },
+            keys: $keys,
+            help: $help,
+            ready: $ready,
+            is_on: entry!(@ $($is_on)?),
+            command: $command,
+        }
+    };
+    (@) => { None };
+    (@ $is_on:expr) => { Some($is_on) };
+}
+
 /// A row of the Help menu that opens a page.
 macro_rules! page {
     ($id:literal, $title:expr, $keys:expr, $page:expr, $help:literal) => {
@@ -199,10 +218,6 @@ pub fn shortcuts(ctx: &Context, model: &mut Model) -> Commands {
 fn modifiers(shortcut: KeyboardShortcut) -> usize {
     let Modifiers { alt, ctrl, shift, command, .. } = shortcut.modifiers;
     [alt, shift, ctrl || command].into_iter().filter(|held| *held).count()
-}
-
-const fn place(menu: Menu, group: u8) -> Place {
-    Place { menu, group }
 }
 
 const fn key(key: Key) -> Keys {

@@ -2,7 +2,7 @@
 
 use egui::{Key, Modifiers};
 
-use super::{Action, Keys, Menu, Ready, always, ctrl, ctrl_shift, in_text_key, on_mcl, on_mcl_key, place};
+use super::{Action, Keys, Ready, always, ctrl, ctrl_shift, in_text_key, on_mcl, on_mcl_key};
 use crate::command::Command;
 use crate::mcl::panel::Tab;
 use crate::mcl::{Editor, MclAction};
@@ -17,32 +17,16 @@ const NONE: Modifiers = Modifiers::NONE;
 /// One row whose command is an action that depends on nothing.
 macro_rules! row {
     ($menu:ident $group:literal, $id:literal, $title:literal, $keys:expr, $ready:expr, $action:expr, $help:literal) => {
-        Action {
-            id: $id,
-            title: $title,
-            place: place(Menu::$menu, $group),
-            keys: $keys,
-            help: $help,
-            ready: $ready,
-            is_on: None,
-            command: |_| Command::Mcl($action),
-        }
+        entry!($menu $group $id, $title, $help,
+            $keys, $ready, |_| Command::Mcl($action))
     };
 }
 
 /// One row for something that is on or off.
 macro_rules! switch {
     ($id:literal, $title:literal, $keys:expr, $action:expr, $is_on:expr, $help:literal) => {
-        Action {
-            id: $id,
-            title: $title,
-            place: place(Menu::View, 4),
-            keys: $keys,
-            help: $help,
-            ready: on_mcl,
-            is_on: Some($is_on),
-            command: |_| Command::Mcl($action),
-        }
+        entry!(View 4 $id, $title, $help,
+            $keys, on_mcl, |_| Command::Mcl($action), on $is_on)
     };
 }
 
@@ -58,36 +42,12 @@ pub(super) const FILE: &[Action] = &[
     row!(File 0, "file.save", "Save MCL Program", ctrl(Key::S), always, MclAction::Save, "Saves the open MCL program to its file."),
     row!(File 0, "file.save-as", "Save MCL Program As…", ctrl_shift(Key::S), always, MclAction::SaveAs, "Saves the open MCL program under another name."),
     row!(File 0, "file.print", "Print MCL Program…", on_mcl_key(CTRL, Key::P), on_mcl, MclAction::Print, "Prints the open MCL program with colours and line numbers: on the system's printer or to a PDF file."),
-    Action {
-        id: "file.close",
-        title: "Close MCL Program",
-        place: place(Menu::File, 0),
-        keys: on_mcl_key(CTRL, Key::W),
-        help: "Closes the tab in front; unsaved text is asked for first.",
-        ready: on_mcl,
-        is_on: None,
-        command: |model| Command::Mcl(MclAction::Close(model.mcl.front().id())),
-    },
-    Action {
-        id: "file.next-program",
-        title: "Next MCL Program",
-        place: place(Menu::File, 0),
-        keys: on_mcl_key(CTRL, Key::Tab),
-        help: "Puts the next tab in front.",
-        ready: on_mcl,
-        is_on: None,
-        command: |model| Command::Mcl(MclAction::Front(model.mcl.neighbour(true))),
-    },
-    Action {
-        id: "file.previous-program",
-        title: "Previous MCL Program",
-        place: place(Menu::File, 0),
-        keys: on_mcl_key(CTRL_SHIFT, Key::Tab),
-        help: "Puts the previous tab in front.",
-        ready: on_mcl,
-        is_on: None,
-        command: |model| Command::Mcl(MclAction::Front(model.mcl.neighbour(false))),
-    },
+    entry!(File 0 "file.close", "Close MCL Program", "Closes the tab in front; unsaved text is asked for first.",
+        on_mcl_key(CTRL, Key::W), on_mcl, |model| Command::Mcl(MclAction::Close(model.mcl.front().id()))),
+    entry!(File 0 "file.next-program", "Next MCL Program", "Puts the next tab in front.",
+        on_mcl_key(CTRL, Key::Tab), on_mcl, |model| Command::Mcl(MclAction::Front(model.mcl.neighbour(true)))),
+    entry!(File 0 "file.previous-program", "Previous MCL Program", "Puts the previous tab in front.",
+        on_mcl_key(CTRL_SHIFT, Key::Tab), on_mcl, |model| Command::Mcl(MclAction::Front(model.mcl.neighbour(false)))),
     example!(
         0,
         "file.example-hello",
@@ -182,47 +142,15 @@ pub(super) const VIEW: &[Action] = &[
     row!(View 4, "view.fold", "Fold or Unfold Block", in_text_key(CTRL, Key::OpenBracket), on_mcl, MclAction::ToggleFoldHere, "Folds the block of the caret away, or brings it back."),
     row!(View 4, "view.fold-all", "Fold All", Keys::None, on_mcl, MclAction::FoldAll, "Folds every block away."),
     row!(View 4, "view.unfold-all", "Unfold All", Keys::None, on_mcl, MclAction::UnfoldAll, "Brings every block back."),
-    Action {
-        id: "view.zoom-in",
-        title: "Text Larger",
-        place: place(Menu::View, 5),
-        keys: on_mcl_key(ALT, Key::Plus),
-        help: "Makes the text of MCL programs larger; Ctrl+wheel does the same.",
-        ready: on_mcl,
-        is_on: None,
-        command: |model| Command::Mcl(MclAction::Zoom(zoom(&model.mcl).saturating_add(10))),
-    },
-    Action {
-        id: "view.zoom-out",
-        title: "Text Smaller",
-        place: place(Menu::View, 5),
-        keys: on_mcl_key(ALT, Key::Minus),
-        help: "Makes the text of MCL programs smaller.",
-        ready: on_mcl,
-        is_on: None,
-        command: |model| Command::Mcl(MclAction::Zoom(zoom(&model.mcl).saturating_sub(10))),
-    },
+    entry!(View 5 "view.zoom-in", "Text Larger", "Makes the text of MCL programs larger; Ctrl+wheel does the same.",
+        on_mcl_key(ALT, Key::Plus), on_mcl, |model| Command::Mcl(MclAction::Zoom(zoom(&model.mcl).saturating_add(10)))),
+    entry!(View 5 "view.zoom-out", "Text Smaller", "Makes the text of MCL programs smaller.",
+        on_mcl_key(ALT, Key::Minus), on_mcl, |model| Command::Mcl(MclAction::Zoom(zoom(&model.mcl).saturating_sub(10)))),
     row!(View 5, "view.zoom-normal", "Text Zoom 100 %", on_mcl_key(ALT, Key::Num0), on_mcl, MclAction::Zoom(100), "Makes the text of MCL programs as large as at first."),
-    Action {
-        id: "view.problems",
-        title: "Problems",
-        place: place(Menu::View, 6),
-        keys: Keys::None,
-        help: "Shows and hides the list of errors and warnings.",
-        ready: on_mcl,
-        is_on: Some(|model| shows(&model.mcl, Tab::Problems)),
-        command: |_| Command::Mcl(MclAction::ShowPanel(Tab::Problems)),
-    },
-    Action {
-        id: "view.terminal",
-        title: "Terminal",
-        place: place(Menu::View, 6),
-        keys: on_mcl_key(CTRL, Key::Backtick),
-        help: "Shows and hides the terminal for what a script sends and gets.",
-        ready: on_mcl,
-        is_on: Some(|model| shows(&model.mcl, Tab::Terminal)),
-        command: |_| Command::Mcl(MclAction::ShowPanel(Tab::Terminal)),
-    },
+    entry!(View 6 "view.problems", "Problems", "Shows and hides the list of errors and warnings.",
+        Keys::None, on_mcl, |_| Command::Mcl(MclAction::ShowPanel(Tab::Problems)), on |model| shows(&model.mcl, Tab::Problems)),
+    entry!(View 6 "view.terminal", "Terminal", "Shows and hides the terminal for what a script sends and gets.",
+        on_mcl_key(CTRL, Key::Backtick), on_mcl, |_| Command::Mcl(MclAction::ShowPanel(Tab::Terminal)), on |model| shows(&model.mcl, Tab::Terminal)),
 ];
 
 fn zoom(editor: &Editor) -> u16 {
