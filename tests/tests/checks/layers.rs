@@ -368,6 +368,11 @@ fn every_crate_takes_the_lints_and_the_versions_of_the_workspace() {
     for member in Metadata::load().members {
         let manifest = workspace::read(&format!("{}/Cargo.toml", member.folder));
         assert!(manifest.contains("[lints]\nworkspace = true"), "{} has lints of its own", member.name);
+        if !member.folder.starts_with("tests") {
+            let root = workspace::read(&format!("{}/src/lib.rs", member.folder));
+            let asks = root.contains("#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]");
+            assert!(asks, "{} takes new members of an enum in silence", member.name);
+        }
         let mut in_dependencies = false;
         for line in manifest.lines() {
             if line.starts_with('[') {
