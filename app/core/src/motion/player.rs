@@ -5,9 +5,9 @@
 
 use std::time::Duration;
 
+use brushwork_link::Failure;
 use brushwork_link::device::{Drive, DriveCommand, Job, JobContext};
 use brushwork_link::exchange::ExchangeError;
-use brushwork_link::{Failure, Wire};
 use brushwork_tuning::{Point, StepFigures};
 use brushwork_values::Motor;
 

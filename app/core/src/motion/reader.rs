@@ -2,7 +2,6 @@
 
 use brushwork_link::device::JobContext;
 use brushwork_link::exchange::ExchangeError;
-use brushwork_link::wire::Wire;
 use std::time::Duration;
 
 use super::speed::Reading;

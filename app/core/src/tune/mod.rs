@@ -15,7 +15,6 @@ use std::time::Duration;
 use brushwork_family::tuned::{Tuned, failed, thrice};
 use brushwork_link::device::Job;
 use brushwork_link::settings::{Ending, SettingValue, Subject, begin_trial, end_act};
-use brushwork_link::wire::Wire;
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::experiment_guard::RUN_STREAM_TIMEOUT_MS;

@@ -32,7 +32,7 @@ pub use event::{DisarmReason, Event};
 pub use family::AnyFamily;
 pub use handle::{DeviceHandle, Stopper};
 pub use identity::{Capabilities, Facts, Identity, UnitFacts};
-pub use job::{Job, JobContext, JobEnding, JobId, JobReport, JobTicket, QueuedJob};
+pub use job::{Job, JobContext, JobEnding, JobHost, JobId, JobReport, JobTicket, QueuedJob};
 pub use options::{AddressSet, Addresses, DeviceOptions};
 pub use poll_rate::PollRate;
 pub use readings::{NoReadings, Power, Readings};

@@ -3,7 +3,6 @@
 use crate::TypedWire;
 use crate::family::layout_of;
 use crate::packet::typed_reply;
-use brushwork_link::Wire;
 use brushwork_link::device::{JobContext, Power, Readings};
 use brushwork_link::exchange::{ExchangeError, Span};
 use brushwork_mcp_wire::packet_serial::name::*;

@@ -4,7 +4,7 @@ use crate::encoder;
 use brushwork_family::tuned::{Registers, Restored, Target, Tuned, failed, reported, thrice};
 use brushwork_link::device::JobContext;
 use brushwork_link::settings::SettingValue;
-use brushwork_link::{Failure, Stream, Wire};
+use brushwork_link::{Failure, Stream};
 use brushwork_mcp_axis::{Carrier, McpHeld, McpLaw, McpWrite, PacketAxis, Timed};
 use brushwork_mcp_client::packet::typed_reply;
 use brushwork_mcp_client::{MCP, layout_of, packet_address};

@@ -1,8 +1,8 @@
 //! The loop of a Motion Mind over the device thread.
 
 use brushwork_family::tuned::{OtherTuned, Registers, Restored, Target, Tuned, failed, reported, thrice};
+use brushwork_link::Failure;
 use brushwork_link::device::JobContext;
-use brushwork_link::{Failure, Wire};
 use brushwork_motion_mind_axis::law::{MotionMindLaw, MotionMindPart};
 use brushwork_motion_mind_axis::{BITS_PER_BYTE, LoopAfter, MindAxis, MindCarrier, worked_at};
 use brushwork_motion_mind_client::{MOTION_MIND, MotionMindFacts};

@@ -3,7 +3,6 @@
 use std::path::Path;
 use std::time::Duration;
 
-use brushwork_link::Wire as _;
 use brushwork_mcp_client::script::{DOWNLOAD_JOB, Downloaded, Origin, ScriptImage, Verified, download};
 use brushwork_script::diagnostic::Severity;
 use brushwork_script::image;

@@ -1,6 +1,5 @@
 //! The download of a script into an MCP.
 
-use brushwork_link::Wire as _;
 use brushwork_link::device::Job;
 use brushwork_mcp_client::script::{DOWNLOAD_JOB, Downloaded, ScriptImage, Verified, download};
 use std::time::Duration;

@@ -6,13 +6,13 @@ use crate::device::channel::Sample;
 use crate::device::drive::Drive;
 use crate::device::event::{DisarmReason, Event};
 use crate::device::job::{JobEnding, JobId, JobReport, QueuedJob};
-use crate::device::job_context::{JobContext, JobHost};
+use crate::device::job_context::JobHost;
 use crate::exchange::{ExchangeError, Interruption, Reply, Watch};
 use crate::failure::Failure;
 use crate::transport::TransportError;
 use crate::unit::{FirmwareGeneration, UnitAddress};
-use crate::wire::HiddenSettings;
-use brushwork_values::Value;
+use crate::wire::{HiddenSettings, Wire};
+use brushwork_values::{Value, Values};
 use std::any::Any;
 use std::panic::{self, AssertUnwindSafe};
 use std::time::Duration;
@@ -56,7 +56,7 @@ impl DeviceLoop {
             broken_by: None,
             stop: None,
         };
-        let result = panic::catch_unwind(AssertUnwindSafe(|| (job.run)(&mut JobContext::new(&mut host))));
+        let result = panic::catch_unwind(AssertUnwindSafe(|| (job.run)(&mut host)));
         let (broken_by, stop) = (host.broken_by, host.stop);
         self.guard.job_ended();
         let ending = ending(result, broken_by);
@@ -190,8 +190,99 @@ impl Host<'_> {
     }
 }
 
+impl Wire for Host<'_> {
+    fn transact_values(&mut self, command: u8, values: Vec<Value>) -> Result<Values, ExchangeError> {
+        self.reply(command, values).map(|reply| reply.values)
+    }
+
+    fn address(&self) -> UnitAddress {
+        self.identity().unit_address()
+    }
+
+    fn generation(&self) -> FirmwareGeneration {
+        self.identity().generation
+    }
+
+    fn is_simulated(&self) -> bool {
+        self.core.options.simulated
+    }
+
+    fn now(&self) -> Duration {
+        self.core.clock.now()
+    }
+
+    fn sleep(&mut self, time: Duration) -> Result<(), ExchangeError> {
+        self.check()?;
+        self.core.keep_house();
+        let slept = self.core.exchange.wait(time, &self.core.guard);
+        self.settle(slept)
+    }
+
+    fn port(&self) -> String {
+        self.core.exchange.port()
+    }
+
+    fn set_address(&mut self, address: UnitAddress) -> bool {
+        self.core.readdress(address.get())
+    }
+
+    fn hidden_settings(&self) -> Option<&dyn HiddenSettings> {
+        self.core.options.hidden.as_deref()
+    }
+
+    fn report_progress(&mut self, done: usize, of: usize, what: &str) {
+        let fraction = if of == 0 { None } else { Some(done as f32 / of as f32) };
+        self.progress(fraction, what);
+    }
+
+    fn set_quiet(&mut self, quiet: bool) {
+        self.polling = !quiet;
+    }
+}
+
 impl JobHost for Host<'_> {
-    fn transact(&mut self, command: u8, values: Vec<Value>) -> Result<Reply, ExchangeError> {
+    fn progress(&mut self, fraction: Option<f32>, text: &str) {
+        self.core.outbox.send(Event::JobProgress { id: self.job, fraction, text: text.to_owned() });
+    }
+
+    fn interruption(&mut self) -> Option<Interruption> {
+        self.check().err().and_then(|error| error.interruption())
+    }
+
+    fn transact_timed(&mut self, command: u8, values: &[i64]) -> Result<Reply, ExchangeError> {
+        self.reply(command, values.iter().map(|&value| Value::Int(value)).collect())
+    }
+
+    fn drive(&mut self, drive: &Drive) -> Result<(), ExchangeError> {
+        self.check()?;
+        self.read_between()?;
+        let sent_at = self.core.clock.now();
+        let driven = self.core.act(self.asked_at, |unit, line| unit.drive(line, drive));
+        if driven.is_ok() {
+            self.core.note_drive(drive, sent_at);
+        }
+        self.settle(driven)
+    }
+
+    fn facts(&self) -> Facts {
+        self.identity().facts.clone()
+    }
+
+    fn byte_time(&self) -> Option<Duration> {
+        self.core.exchange.byte_time()
+    }
+
+    fn sample(&mut self, sample: Sample) {
+        self.core.send_sample(sample);
+    }
+
+    fn set_polling(&mut self, on: bool) {
+        self.polling = on;
+    }
+}
+
+impl Host<'_> {
+    fn reply(&mut self, command: u8, values: Vec<Value>) -> Result<Reply, ExchangeError> {
         self.check()?;
         self.read_between()?;
         self.stop_before(command)?;
@@ -206,78 +297,6 @@ impl JobHost for Host<'_> {
         self.settle(reply)
     }
 
-    fn drive(&mut self, drive: &Drive) -> Result<(), ExchangeError> {
-        self.check()?;
-        self.read_between()?;
-        let sent_at = self.core.clock.now();
-        let driven = self.core.act(self.asked_at, |unit, line| unit.drive(line, drive));
-        if driven.is_ok() {
-            self.core.note_drive(drive, sent_at);
-        }
-        self.settle(driven)
-    }
-
-    fn sleep(&mut self, time: Duration) -> Result<(), ExchangeError> {
-        self.check()?;
-        self.core.keep_house();
-        let slept = self.core.exchange.wait(time, &self.core.guard);
-        self.settle(slept)
-    }
-
-    fn interruption(&mut self) -> Option<Interruption> {
-        self.check().err().and_then(|error| error.interruption())
-    }
-
-    fn progress(&mut self, fraction: Option<f32>, text: &str) {
-        self.core.outbox.send(Event::JobProgress { id: self.job, fraction, text: text.to_owned() });
-    }
-
-    fn sample(&mut self, sample: Sample) {
-        self.core.send_sample(sample);
-    }
-
-    fn set_polling(&mut self, on: bool) {
-        self.polling = on;
-    }
-
-    fn address(&self) -> UnitAddress {
-        self.identity().unit_address()
-    }
-
-    fn generation(&self) -> FirmwareGeneration {
-        self.identity().generation
-    }
-
-    fn facts(&self) -> Facts {
-        self.identity().facts.clone()
-    }
-
-    fn is_simulated(&self) -> bool {
-        self.core.options.simulated
-    }
-
-    fn now(&self) -> Duration {
-        self.core.clock.now()
-    }
-
-    fn port(&self) -> String {
-        self.core.exchange.port()
-    }
-
-    fn set_address(&mut self, address: UnitAddress) -> bool {
-        self.core.readdress(address.get())
-    }
-
-    fn byte_time(&self) -> Option<Duration> {
-        self.core.exchange.byte_time()
-    }
-
-    fn hidden_settings(&self) -> Option<&dyn HiddenSettings> {
-        self.core.options.hidden.as_deref()
-    }
-}
-
-impl Host<'_> {
     fn identity(&self) -> &crate::device::identity::Identity {
         self.core.units[self.core.selected].controller.identity()
     }

@@ -1,8 +1,8 @@
 //! Jobs: progress, cancel, time limit, and the motors stopped on every way out.
 
 use crate::TypedWire;
-use crate::testing::ms;
 use crate::tests::link::harness::{DUTY_ZERO, Link};
+use crate::tests::testing::ms;
 use brushwork_link::clock::Clock;
 use brushwork_link::device::Channel;
 use brushwork_link::device::PollRate;
@@ -12,7 +12,6 @@ use brushwork_link::device::{DisarmReason, Event};
 use brushwork_link::device::{Request, RequestRefused};
 use brushwork_link::exchange::{ExchangeError, Interruption};
 use brushwork_link::failure::Failure;
-use brushwork_link::wire::Wire;
 use brushwork_mcp_wire::packet_serial::{commands, name, number};
 use brushwork_values::Motor;
 use std::time::Duration;
