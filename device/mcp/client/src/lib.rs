@@ -17,8 +17,6 @@ mod readings;
 pub mod script;
 pub mod settings;
 #[cfg(test)]
-mod testing;
-#[cfg(test)]
 mod tests;
 
 pub use controller::{PacketSerial, channels, describe_sent, indicators, preview};

@@ -269,12 +269,13 @@ mod tests {
     fn stop_is_duty_zero_then_end_of_script_and_duty_zero_then_empty_buffers_and_duty_zero() {
         let speaker = Speaker::packets(Address::DEFAULT, Generation::Gen1);
         // 0x80, command 54, duty 0, accel 655359 (0009 FFFF), twice, CRC.
-        let duty_zero =
-            crate::testing::with_crc(&[0x80, 54, 0, 0, 0x00, 0x09, 0xFF, 0xFF, 0, 0, 0x00, 0x09, 0xFF, 0xFF]);
+        let duty_zero = crate::tests::testing::with_crc(&[
+            0x80, 54, 0, 0, 0x00, 0x09, 0xFF, 0xFF, 0, 0, 0x00, 0x09, 0xFF, 0xFF,
+        ]);
         // 0x80, command 249, CRC.
-        let end_script = crate::testing::with_crc(&[0x80, 249]);
+        let end_script = crate::tests::testing::with_crc(&[0x80, 249]);
         // 0x80, command 43, speed and distance 0 for both, buffer byte 1, CRC.
-        let drop = crate::testing::with_crc(&[[0x80, 43].as_slice(), &[0; 16], &[1]].concat());
+        let drop = crate::tests::testing::with_crc(&[[0x80, 43].as_slice(), &[0; 16], &[1]].concat());
         let bytes = |scripts, buffered| bytes(speaker, scripts, buffered).concat();
         assert_eq!(bytes(false, false), duty_zero);
         assert_eq!(bytes(true, false), [&*duty_zero, &end_script, &duty_zero].concat());

@@ -60,7 +60,7 @@ fn events(bytes: &[u8], generation: Generation) -> Vec<FramerEvent> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{reply_to, with_crc};
+    use crate::tests::testing::{reply_to, with_crc};
 
     const G1: Generation = Generation::Gen1;
 

@@ -1,7 +1,7 @@
 //! Exchanges against a scripted far end, in virtual time.
 
 use crate::packet::{Ask, gate, transact};
-use crate::testing::{Answers, ScriptedTransport, Wiretap, ms, reply_to, script, with_crc};
+use crate::tests::testing::{Answers, ScriptedTransport, Wiretap, ms, reply_to, script, with_crc};
 use brushwork_link::clock::{Clock, VirtualClock};
 use brushwork_link::exchange::Permit;
 use brushwork_link::exchange::*;

@@ -3,3 +3,4 @@
 mod exchange;
 mod link;
 mod settings;
+pub mod testing;

@@ -1,8 +1,8 @@
 //! Who may move motors, and for how long: arming, its refusals, what disarms, and the dead-man.
 
-use crate::testing::ms;
-use crate::testing::unit::{Bus, SharedBus};
 use crate::tests::link::harness::{DUTY_ZERO, Link};
+use crate::tests::testing::ms;
+use crate::tests::testing::unit::{Bus, SharedBus};
 use brushwork_link::clock::Clock;
 use brushwork_link::device::DeviceOptions;
 use brushwork_link::device::PollRate;
@@ -134,7 +134,7 @@ fn arming_is_refused_when_the_controller_does_not_tell_its_time_out() {
 fn a_roboclaw_is_judged_by_its_one_serial_time_out() {
     for (raw, timeout) in [(0, None), (5, Some(ms(500)))] {
         let bus = Bus::shared();
-        crate::testing::unit::of_generation(&bus, brushwork_mcp_wire::packet_serial::Generation::Gen3);
+        crate::tests::testing::unit::of_generation(&bus, brushwork_mcp_wire::packet_serial::Generation::Gen3);
         bus.lock().unwrap().mute = BTreeSet::from([number::READ_STREAMS, number::READ_PRIORITIES]);
         bus.lock().unwrap().set(number::READ_SERIAL_TIMEOUT, &[raw]);
         let mut link = Link::with(bus, DeviceOptions::default());

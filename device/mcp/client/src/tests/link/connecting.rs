@@ -1,8 +1,8 @@
 //! Finding units: which answer, what they are, and what is said when none does.
 
-use crate::testing::ms;
-use crate::testing::unit::{Bus, answer_all_eight, of_generation};
 use crate::tests::link::harness::Link;
+use crate::tests::testing::ms;
+use crate::tests::testing::unit::{Bus, answer_all_eight, of_generation};
 use brushwork_link::clock::Clock;
 use brushwork_link::device::Event;
 use brushwork_link::device::Identity;
@@ -20,7 +20,7 @@ fn identities(link: &Link) -> Vec<Identity> {
     identities.collect()
 }
 
-fn connect(bus: crate::testing::unit::SharedBus, stream: Option<Stream>) -> Link {
+fn connect(bus: crate::tests::testing::unit::SharedBus, stream: Option<Stream>) -> Link {
     let mut link = Link::with(bus, DeviceOptions { stream, ..DeviceOptions::default() });
     link.run_for(ms(3_000));
     link
@@ -127,7 +127,7 @@ fn a_silent_port_is_told_in_a_sentence_and_the_loop_ends() {
 
 #[test]
 fn a_port_that_is_no_controller_is_told_by_what_it_says_and_nothing_is_sent_but_queries() {
-    use crate::testing::ScriptedTransport;
+    use crate::tests::testing::ScriptedTransport;
     use brushwork_link::clock::VirtualClock;
     use brushwork_link::device::{DeviceLoop, Step};
     let clock = VirtualClock::new();
@@ -148,7 +148,7 @@ fn a_port_that_is_no_controller_is_told_by_what_it_says_and_nothing_is_sent_but_
 
 #[test]
 fn a_computer_under_load_that_answers_late_is_waited_for() {
-    use crate::testing::{ScriptedTransport, reply_to};
+    use crate::tests::testing::{ScriptedTransport, reply_to};
     use brushwork_link::clock::VirtualClock;
     use brushwork_link::device::{DeviceLoop, Step};
     let clock = VirtualClock::new();

@@ -1,7 +1,7 @@
 //! A link in virtual time: the loop, its handle, the bus behind it, and the events so far.
 
-use crate::testing::unit::{Bus, SharedBus, Taken};
-use crate::testing::{ScriptedTransport, Wiretap};
+use crate::tests::testing::unit::{Bus, SharedBus, Taken};
+use crate::tests::testing::{ScriptedTransport, Wiretap};
 use brushwork_link::clock::{Clock, VirtualClock};
 use brushwork_link::device::DeviceHandle;
 use brushwork_link::device::DeviceOptions;

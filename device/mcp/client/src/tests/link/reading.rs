@@ -1,9 +1,9 @@
 //! Sweeps: what is read how often, what a sample holds, and a window that does not take it.
 
 use crate::controller::channels::CHANNELS;
-use crate::testing::ms;
-use crate::testing::unit::{Bus, of_generation};
 use crate::tests::link::harness::Link;
+use crate::tests::testing::ms;
+use crate::tests::testing::unit::{Bus, of_generation};
 use brushwork_link::clock::Clock;
 use brushwork_link::device::DeviceOptions;
 use brushwork_link::device::Event;
@@ -241,6 +241,6 @@ fn traffic_is_shown_on_request() {
     };
     // 0x80, command 78; then two counts of zero with their CRC.
     assert!(link.has(|event| is(event, true, &[0x80, 78])));
-    let reply = crate::testing::reply_to(&[0x80, 78], &[0; 8]);
+    let reply = crate::tests::testing::reply_to(&[0x80, 78], &[0; 8]);
     assert!(link.has(|event| is(event, false, &reply)));
 }

@@ -1,8 +1,8 @@
 //! Stop overtakes everything, goes to every unit, and tells what became of it.
 
-use crate::testing::ms;
-use crate::testing::unit::{Bus, SharedBus, of_roboclaws};
 use crate::tests::link::harness::{DUTY_ZERO, Link};
+use crate::tests::testing::ms;
+use crate::tests::testing::unit::{Bus, SharedBus, of_roboclaws};
 use brushwork_link::clock::Clock;
 use brushwork_link::device::DeviceOptions;
 use brushwork_link::device::PollRate;
@@ -220,7 +220,7 @@ fn stop_while_units_are_still_looked_for_goes_to_all_addresses() {
 
 /// All commands in the bytes that were written, known or not: packets of a Stop have a length that is known.
 fn holds(writes: &[(std::time::Duration, Vec<u8>)], address: u8, command: u8) -> bool {
-    let packet = crate::testing::with_crc(&[address, command]);
+    let packet = crate::tests::testing::with_crc(&[address, command]);
     writes.iter().any(|(_, bytes)| bytes.windows(packet.len()).any(|window| window == packet))
 }
 

@@ -1,7 +1,7 @@
 //! A bus of units that answer from the command table with values a test sets: enough to test the device thread's rules.
 //! How a controller behaves is the simulator's business and is tested against it elsewhere.
 
-use crate::testing::{Answers, ms};
+use crate::tests::testing::{Answers, ms};
 use brushwork_mcp_wire::models::Family;
 use brushwork_mcp_wire::packet_serial::{
     Address, Direction, FramerEvent, Generation, Request, RequestFramer, encode_reply, number,
