@@ -11,45 +11,35 @@ use std::time::Duration;
 /// The silence that ends a command where a controller knows no other: the 10 ms of packet serial (MCP manual 2.2.4).
 pub const PACKET_GAP: Duration = Duration::from_millis(10);
 
-/// A serial stream of a controller, in the order of command 145 (MCP manual 2.3, command 145).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum StreamIndex {
-    /// The USB port, which answers all eight addresses.
-    #[default]
-    Usb,
-    /// RS-232.
-    #[serde(rename = "rs232")]
-    Uart0,
-    /// First TTL serial port.
-    #[serde(rename = "ttl1")]
-    Uart1,
-    /// Second TTL serial port, on pins.
-    #[serde(rename = "ttl2")]
-    Uart2,
-    /// Third TTL serial port, on pins.
-    #[serde(rename = "ttl3")]
-    Uart3,
+brushwork_values::listed! {
+    /// A serial stream of a controller, in the order of command 145 (MCP manual 2.3, command 145).
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum StreamIndex {
+        /// The USB port, which answers all eight addresses.
+        #[default]
+        Usb "usb",
+        /// RS-232.
+        #[serde(rename = "rs232")]
+        Uart0 "rs232",
+        /// First TTL serial port.
+        #[serde(rename = "ttl1")]
+        Uart1 "ttl1",
+        /// Second TTL serial port, on pins.
+        #[serde(rename = "ttl2")]
+        Uart2 "ttl2",
+        /// Third TTL serial port, on pins.
+        #[serde(rename = "ttl3")]
+        Uart3 "ttl3",
+    }
+    /// Name in command lines and settings: "usb", "rs232", "ttl1", "ttl2", "ttl3".
+    fn key;
 }
 
 impl StreamIndex {
-    /// All five, in the order of command 145.
-    pub const ALL: [Self; 5] = [Self::Usb, Self::Uart0, Self::Uart1, Self::Uart2, Self::Uart3];
-
     /// Index in command 145, 0 to 4.
     pub const fn index(self) -> usize {
         self as usize
-    }
-
-    /// Name in command lines and settings: "usb", "rs232", "ttl1", "ttl2", "ttl3".
-    pub const fn key(self) -> &'static str {
-        match self {
-            Self::Usb => "usb",
-            Self::Uart0 => "rs232",
-            Self::Uart1 => "ttl1",
-            Self::Uart2 => "ttl2",
-            Self::Uart3 => "ttl3",
-        }
     }
 
     /// The stream of that name, whatever its case.

@@ -8,6 +8,7 @@ pub mod debug;
 pub mod diagnostic;
 pub mod disassembly;
 pub mod image;
+mod listed;
 pub mod mcl;
 pub mod op;
 pub mod program;

@@ -8,6 +8,7 @@
 mod code;
 mod field;
 mod hex;
+mod listed;
 mod motor;
 mod severity;
 mod value;

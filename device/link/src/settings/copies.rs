@@ -6,33 +6,22 @@ use super::difference::{Difference, diff};
 use super::image::SettingsImage;
 use super::table::SettingsTable;
 
-/// One of the copies of a controller's settings.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Copy {
-    /// What the controller works with now, as last read.
-    Ram,
-    /// What the controller will work with after a power cycle, as last known.
-    Eeprom,
-    /// What the open profile holds.
-    Profile,
-    /// What "restore defaults" would give.
-    Default,
-}
-
-impl Copy {
-    /// Every copy.
-    pub const ALL: [Self; 4] = [Self::Ram, Self::Eeprom, Self::Profile, Self::Default];
-
-    /// The copy's name.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::Ram => "controller (RAM)",
-            Self::Eeprom => "controller (EEPROM as last known)",
-            Self::Profile => "profile",
-            Self::Default => "defaults",
-        }
+brushwork_values::listed! {
+    /// One of the copies of a controller's settings.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+    #[serde(rename_all = "snake_case")]
+    pub enum Copy {
+        /// What the controller works with now, as last read.
+        Ram "controller (RAM)",
+        /// What the controller will work with after a power cycle, as last known.
+        Eeprom "controller (EEPROM as last known)",
+        /// What the open profile holds.
+        Profile "profile",
+        /// What "restore defaults" would give.
+        Default "defaults",
     }
+    /// The copy's name.
+    fn label;
 }
 
 /// The copies of one controller's settings, told apart. What is not known stays `None`; nothing is guessed:

@@ -50,99 +50,53 @@ pub struct Row {
     pub register: Option<u8>,
 }
 
-/// A part of the settings, in the order in which screens show them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Group {
-    /// Address, mixing, E-Stop, PWM mode.
-    Unit,
-    /// Battery voltage windows.
-    VoltageLimits,
-    /// Current limits per motor.
-    CurrentLimits,
-    /// Which input commands the motors.
-    PriorityLevels,
-    /// Running a script after power up.
-    Scripting,
-    /// Which pin is the encoder of a motor.
-    Encoders,
-    /// Inductance, resistance, acceleration and idle behaviour of a motor.
-    Motor,
-    /// Velocity gains and top speed.
-    Velocity,
-    /// Position gains and travel.
-    Position,
-    /// Speed and position error limits.
-    ErrorLimits,
-    /// Homing.
-    Homing,
-    /// Input pins.
-    Pins,
-    /// Serial ports.
-    Streams,
-    /// CAN and I2C buses.
-    Buses,
-    /// Digital outputs.
-    Outputs,
-    /// What only one line of a family's boards has.
-    #[serde(rename = "robo_claw")]
-    ProductLine,
-    /// The PID of a Motion Mind.
-    Loop,
-    /// The bits of FUNCTION of a Motion Mind.
-    Functions,
-    /// The bits of FUNCTION2 of a Motion Mind.
-    Functions2,
-}
-
-impl Group {
-    /// Every group, in screen order.
-    pub const ALL: [Self; 19] = [
-        Self::Unit,
-        Self::VoltageLimits,
-        Self::CurrentLimits,
-        Self::PriorityLevels,
-        Self::Scripting,
-        Self::Encoders,
-        Self::Motor,
-        Self::Velocity,
-        Self::Position,
-        Self::ErrorLimits,
-        Self::Homing,
-        Self::Pins,
-        Self::Streams,
-        Self::Buses,
-        Self::Outputs,
-        Self::ProductLine,
-        Self::Loop,
-        Self::Functions,
-        Self::Functions2,
-    ];
-
-    /// The group's heading.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::Unit => "Unit settings",
-            Self::VoltageLimits => "Voltage limits",
-            Self::CurrentLimits => "Current limits",
-            Self::PriorityLevels => "Priority levels",
-            Self::Scripting => "Scripting",
-            Self::Encoders => "Encoders",
-            Self::Motor => "Motor",
-            Self::Velocity => "Velocity",
-            Self::Position => "Position",
-            Self::ErrorLimits => "Error limits",
-            Self::Homing => "Homing",
-            Self::Pins => "Pins",
-            Self::Streams => "Serial ports",
-            Self::Buses => "CAN and I2C",
-            Self::Outputs => "Digital outputs",
-            Self::ProductLine => "RoboClaw",
-            Self::Loop => "PID",
-            Self::Functions => "FUNCTION",
-            Self::Functions2 => "FUNCTION2",
-        }
+brushwork_values::listed! {
+    /// A part of the settings, in the order in which screens show them.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+    #[serde(rename_all = "snake_case")]
+    pub enum Group {
+        /// Address, mixing, E-Stop, PWM mode.
+        Unit "Unit settings",
+        /// Battery voltage windows.
+        VoltageLimits "Voltage limits",
+        /// Current limits per motor.
+        CurrentLimits "Current limits",
+        /// Which input commands the motors.
+        PriorityLevels "Priority levels",
+        /// Running a script after power up.
+        Scripting "Scripting",
+        /// Which pin is the encoder of a motor.
+        Encoders "Encoders",
+        /// Inductance, resistance, acceleration and idle behaviour of a motor.
+        Motor "Motor",
+        /// Velocity gains and top speed.
+        Velocity "Velocity",
+        /// Position gains and travel.
+        Position "Position",
+        /// Speed and position error limits.
+        ErrorLimits "Error limits",
+        /// Homing.
+        Homing "Homing",
+        /// Input pins.
+        Pins "Pins",
+        /// Serial ports.
+        Streams "Serial ports",
+        /// CAN and I2C buses.
+        Buses "CAN and I2C",
+        /// Digital outputs.
+        Outputs "Digital outputs",
+        /// What only one line of a family's boards has.
+        #[serde(rename = "robo_claw")]
+        ProductLine "RoboClaw",
+        /// The PID of a Motion Mind.
+        Loop "PID",
+        /// The bits of FUNCTION of a Motion Mind.
+        Functions "FUNCTION",
+        /// The bits of FUNCTION2 of a Motion Mind.
+        Functions2 "FUNCTION2",
     }
+    /// The group's heading.
+    fn label;
 }
 
 /// Which of several alike things a row belongs to.

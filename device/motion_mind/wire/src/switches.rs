@@ -3,42 +3,34 @@
 use serde::Serialize;
 use std::fmt;
 
-/// What moves the motor (Motion Mind manual, chapter 4). The switches of the board choose it at power-up.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "snake_case")]
-#[repr(u8)]
-pub enum Mode {
-    /// Pulses of a radio receiver.
-    RadioControl = 0,
-    /// A voltage.
-    Analog = 1,
-    /// Two buttons.
-    Buttons = 2,
-    /// Serial commands, open loop.
-    Serial = 3,
-    /// Serial commands, closed loop.
-    SerialPid = 4,
-    /// A voltage or serial commands, closed loop on a voltage or the encoder.
-    AnalogPid = 5,
-    /// Nothing; both limit inputs at ground bring back the factory's values.
-    FactoryRestore = 6,
-    /// Nothing.
-    FactoryTest = 7,
+brushwork_values::listed! {
+    /// What moves the motor (Motion Mind manual, chapter 4). The switches of the board choose it at power-up.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+    #[serde(rename_all = "snake_case")]
+    #[repr(u8)]
+    pub enum Mode {
+        /// Pulses of a radio receiver.
+        RadioControl "R/C",
+        /// A voltage.
+        Analog "analog",
+        /// Two buttons.
+        Buttons "buttons",
+        /// Serial commands, open loop.
+        Serial "serial",
+        /// Serial commands, closed loop.
+        SerialPid "serial PID",
+        /// A voltage or serial commands, closed loop on a voltage or the encoder.
+        AnalogPid "analog PID",
+        /// Nothing; both limit inputs at ground bring back the factory's values.
+        FactoryRestore "factory restore",
+        /// Nothing.
+        FactoryTest "factory test",
+    }
+    /// Its name for people.
+    fn label;
 }
 
 impl Mode {
-    /// All eight, by number.
-    pub const ALL: [Self; 8] = [
-        Self::RadioControl,
-        Self::Analog,
-        Self::Buttons,
-        Self::Serial,
-        Self::SerialPid,
-        Self::AnalogPid,
-        Self::FactoryRestore,
-        Self::FactoryTest,
-    ];
-
     /// The mode of that number.
     pub fn from_number(number: u8) -> Option<Self> {
         Self::ALL.get(usize::from(number)).copied()
@@ -47,20 +39,6 @@ impl Mode {
     /// Its number in register 18.
     pub fn number(self) -> u8 {
         self as u8
-    }
-
-    /// Its name for people.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::RadioControl => "R/C",
-            Self::Analog => "analog",
-            Self::Buttons => "buttons",
-            Self::Serial => "serial",
-            Self::SerialPid => "serial PID",
-            Self::AnalogPid => "analog PID",
-            Self::FactoryRestore => "factory restore",
-            Self::FactoryTest => "factory test",
-        }
     }
 }
 

@@ -2,40 +2,26 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A fault inside the controller. A unit whose status word has no bit for it (MCP manual 1.2.5) still stops its motors.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum UnitFault {
-    /// The bridge of motor 1 says it is broken or shorted.
-    M1Driver,
-    /// That of motor 2.
-    M2Driver,
-    /// More current through motor 1 than the board stands, as in a short circuit.
-    M1Current,
-    /// Through motor 2.
-    M2Current,
-    /// Something that is only wrong at start-up: it shows from the next start on.
-    Boot,
-    /// Errors on the CAN bus.
-    Can,
-}
-
-impl UnitFault {
-    /// All of them.
-    pub const ALL: [Self; 6] =
-        [Self::M1Driver, Self::M2Driver, Self::M1Current, Self::M2Current, Self::Boot, Self::Can];
-
-    /// What a person would call it.
-    pub const fn title(self) -> &'static str {
-        match self {
-            Self::M1Driver => "M1 driver fault",
-            Self::M2Driver => "M2 driver fault",
-            Self::M1Current => "M1 short circuit",
-            Self::M2Current => "M2 short circuit",
-            Self::Boot => "Fault at start-up",
-            Self::Can => "CAN bus fault",
-        }
+brushwork_values::listed! {
+    /// A fault inside the controller. A unit whose status word has no bit for it (MCP manual 1.2.5) still stops its motors.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+    #[serde(rename_all = "snake_case")]
+    pub enum UnitFault {
+        /// The bridge of motor 1 says it is broken or shorted.
+        M1Driver "M1 driver fault",
+        /// That of motor 2.
+        M2Driver "M2 driver fault",
+        /// More current through motor 1 than the board stands, as in a short circuit.
+        M1Current "M1 short circuit",
+        /// Through motor 2.
+        M2Current "M2 short circuit",
+        /// Something that is only wrong at start-up: it shows from the next start on.
+        Boot "Fault at start-up",
+        /// Errors on the CAN bus.
+        Can "CAN bus fault",
     }
+    /// What a person would call it.
+    fn title;
 }
 
 /// Which of them are there.

@@ -1,6 +1,7 @@
 //! A program as a tree.
 
 use super::types::VarType;
+use crate::listed::listed;
 use crate::text::Span;
 use std::sync::Arc;
 
@@ -90,55 +91,33 @@ pub struct For {
     pub end: Span,
 }
 
-/// A motion command.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
-pub enum Motion {
-    /// `DIST motor, speed, accel, distance, buffer`.
-    Dist,
-    /// The same for both motors.
-    Dist2,
-    /// `MOVE motor, speed, accel, deccel, position, buffer`.
-    Move,
-    /// The same for both motors.
-    Move2,
-    /// `POWER motor, duty, accel`.
-    Power,
-    /// The same for both motors.
-    Power2,
-    /// `SPEED motor, speed, accel`.
-    Speed,
-    /// The same for both motors.
-    Speed2,
+listed! {
+    /// A motion command.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+    pub enum Motion {
+        /// `DIST motor, speed, accel, distance, buffer`.
+        Dist "DIST",
+        /// The same for both motors.
+        Dist2 "DIST2",
+        /// `MOVE motor, speed, accel, deccel, position, buffer`.
+        Move "MOVE",
+        /// The same for both motors.
+        Move2 "MOVE2",
+        /// `POWER motor, duty, accel`.
+        Power "POWER",
+        /// The same for both motors.
+        Power2 "POWER2",
+        /// `SPEED motor, speed, accel`.
+        Speed "SPEED",
+        /// The same for both motors.
+        Speed2 "SPEED2",
+    }
+    /// Its word.
+    #[must_use]
+    fn word;
 }
 
 impl Motion {
-    /// Every command.
-    pub const ALL: [Self; 8] = [
-        Self::Dist,
-        Self::Dist2,
-        Self::Move,
-        Self::Move2,
-        Self::Power,
-        Self::Power2,
-        Self::Speed,
-        Self::Speed2,
-    ];
-
-    /// Its word.
-    #[must_use]
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Dist => "DIST",
-            Self::Dist2 => "DIST2",
-            Self::Move => "MOVE",
-            Self::Move2 => "MOVE2",
-            Self::Power => "POWER",
-            Self::Power2 => "POWER2",
-            Self::Speed => "SPEED",
-            Self::Speed2 => "SPEED2",
-        }
-    }
-
     /// How many arguments it has.
     #[must_use]
     pub const fn arguments(self) -> usize {
@@ -222,229 +201,83 @@ impl ExprKind {
     }
 }
 
-/// Operators of one operand; all bind tighter than any other (MCP manual 3.2.5).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[expect(missing_docs, reason = "each is the word or sign of MCP manual 3.2.3")]
-pub enum Unary {
-    Negative,
-    BitNot,
-    Not,
-    Abs,
-    Sin,
-    Cos,
-    Sqr,
-    Bin2Bcd,
-    Random,
-    ToInt,
-    ToFloat,
-    FAbs,
-    FSqrt,
-    FSin,
-    FCos,
-    FTan,
-    FAsin,
-    FAcos,
-    FAtan,
-    FSinh,
-    FCosh,
-    FTanh,
-    FAtanh,
-    FLn,
-    FExp,
+listed! {
+    /// Operators of one operand; all bind tighter than any other (MCP manual 3.2.5).
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+    #[expect(missing_docs, reason = "each is the word or sign of MCP manual 3.2.3")]
+    pub enum Unary {
+        Negative,
+        BitNot,
+        Not,
+        Abs,
+        Sin,
+        Cos,
+        Sqr,
+        Bin2Bcd,
+        Random,
+        ToInt,
+        ToFloat,
+        FAbs,
+        FSqrt,
+        FSin,
+        FCos,
+        FTan,
+        FAsin,
+        FAcos,
+        FAtan,
+        FSinh,
+        FCosh,
+        FTanh,
+        FAtanh,
+        FLn,
+        FExp,
+    }
 }
 
-/// Operators of two operands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[expect(missing_docs, reason = "each is the word or sign of MCP manual 3.2.3")]
-pub enum Binary {
-    Dig,
-    Max,
-    Min,
-    Multiply,
-    MultiplyHigh,
-    MultiplyFraction,
-    Divide,
-    Remainder,
-    Add,
-    Subtract,
-    ShiftLeft,
-    ShiftRight,
-    Less,
-    LessOrEqual,
-    Equal,
-    GreaterOrEqual,
-    Greater,
-    NotEqual,
-    BitAnd,
-    BitOr,
-    BitXor,
-    BitNand,
-    BitNor,
-    BitNxor,
-    And,
-    Or,
-    Xor,
+listed! {
+    /// Operators of two operands.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+    #[expect(missing_docs, reason = "each is the word or sign of MCP manual 3.2.3")]
+    pub enum Binary {
+        Dig,
+        Max,
+        Min,
+        Multiply,
+        MultiplyHigh,
+        MultiplyFraction,
+        Divide,
+        Remainder,
+        Add,
+        Subtract,
+        ShiftLeft,
+        ShiftRight,
+        Less,
+        LessOrEqual,
+        Equal,
+        GreaterOrEqual,
+        Greater,
+        NotEqual,
+        BitAnd,
+        BitOr,
+        BitXor,
+        BitNand,
+        BitNor,
+        BitNxor,
+        And,
+        Or,
+        Xor,
+    }
 }
 
 impl Unary {
-    /// Every one, in the order in which images number them.
-    pub const ALL: [Self; 25] = [
-        Self::Negative,
-        Self::BitNot,
-        Self::Not,
-        Self::Abs,
-        Self::Sin,
-        Self::Cos,
-        Self::Sqr,
-        Self::Bin2Bcd,
-        Self::Random,
-        Self::ToInt,
-        Self::ToFloat,
-        Self::FAbs,
-        Self::FSqrt,
-        Self::FSin,
-        Self::FCos,
-        Self::FTan,
-        Self::FAsin,
-        Self::FAcos,
-        Self::FAtan,
-        Self::FSinh,
-        Self::FCosh,
-        Self::FTanh,
-        Self::FAtanh,
-        Self::FLn,
-        Self::FExp,
-    ];
-
-    /// The operator of this word.
-    #[must_use]
-    pub fn of_word(word: &str) -> Option<Self> {
-        Some(match word.to_ascii_lowercase().as_str() {
-            "not" => Self::Not,
-            "abs" => Self::Abs,
-            "sin" => Self::Sin,
-            "cos" => Self::Cos,
-            "sqr" => Self::Sqr,
-            "bin2bcd" => Self::Bin2Bcd,
-            "random" => Self::Random,
-            "toint" => Self::ToInt,
-            "tofloat" => Self::ToFloat,
-            "fabs" => Self::FAbs,
-            "fsqrt" => Self::FSqrt,
-            "fsin" => Self::FSin,
-            "fcos" => Self::FCos,
-            "ftan" => Self::FTan,
-            "fasin" => Self::FAsin,
-            "facos" => Self::FAcos,
-            "fatan" => Self::FAtan,
-            "fsinh" => Self::FSinh,
-            "fcosh" => Self::FCosh,
-            "ftanh" => Self::FTanh,
-            "fatanh" => Self::FAtanh,
-            "fln" => Self::FLn,
-            "fexp" => Self::FExp,
-            _ => return None,
-        })
-    }
-
-    /// Whether it takes and gives floats.
+    /// Whether it takes and gives floats, as all from FABS on do.
     #[must_use]
     pub const fn is_float(self) -> bool {
-        matches!(
-            self,
-            Self::FAbs
-                | Self::FSqrt
-                | Self::FSin
-                | Self::FCos
-                | Self::FTan
-                | Self::FAsin
-                | Self::FAcos
-                | Self::FAtan
-                | Self::FSinh
-                | Self::FCosh
-                | Self::FTanh
-                | Self::FAtanh
-                | Self::FLn
-                | Self::FExp
-        )
+        self as u8 >= Self::FAbs as u8
     }
 }
 
 impl Binary {
-    /// Every one, in the order in which images number them.
-    pub const ALL: [Self; 27] = [
-        Self::Dig,
-        Self::Max,
-        Self::Min,
-        Self::Multiply,
-        Self::MultiplyHigh,
-        Self::MultiplyFraction,
-        Self::Divide,
-        Self::Remainder,
-        Self::Add,
-        Self::Subtract,
-        Self::ShiftLeft,
-        Self::ShiftRight,
-        Self::Less,
-        Self::LessOrEqual,
-        Self::Equal,
-        Self::GreaterOrEqual,
-        Self::Greater,
-        Self::NotEqual,
-        Self::BitAnd,
-        Self::BitOr,
-        Self::BitXor,
-        Self::BitNand,
-        Self::BitNor,
-        Self::BitNxor,
-        Self::And,
-        Self::Or,
-        Self::Xor,
-    ];
-
-    /// The operator written with this sign.
-    #[must_use]
-    pub fn of_sign(sign: &str) -> Option<Self> {
-        Some(match sign {
-            "*" => Self::Multiply,
-            "**" => Self::MultiplyHigh,
-            "*/" => Self::MultiplyFraction,
-            "/" => Self::Divide,
-            "//" => Self::Remainder,
-            "+" => Self::Add,
-            "-" => Self::Subtract,
-            "<<" => Self::ShiftLeft,
-            ">>" => Self::ShiftRight,
-            "<" => Self::Less,
-            "<=" => Self::LessOrEqual,
-            "=" => Self::Equal,
-            ">=" => Self::GreaterOrEqual,
-            ">" => Self::Greater,
-            "<>" => Self::NotEqual,
-            "&" => Self::BitAnd,
-            "|" => Self::BitOr,
-            "^" => Self::BitXor,
-            "&/" => Self::BitNand,
-            "|/" => Self::BitNor,
-            "^/" => Self::BitNxor,
-            _ => return None,
-        })
-    }
-
-    /// The operator of this word.
-    #[must_use]
-    pub fn of_word(word: &str) -> Option<Self> {
-        Some(match word.to_ascii_lowercase().as_str() {
-            "dig" => Self::Dig,
-            "max" => Self::Max,
-            "min" => Self::Min,
-            "and" => Self::And,
-            "or" => Self::Or,
-            "xor" => Self::Xor,
-            _ => return None,
-        })
-    }
-
     /// How tightly it binds: the order of MCP manual 3.2.5, from 2 (first) to 9.
     #[must_use]
     pub const fn order(self) -> u8 {
@@ -474,54 +307,32 @@ impl Binary {
     }
 }
 
-/// How a value is written or read (MCP manual 3.3).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[expect(missing_docs, reason = "each is the word of MCP manual 3.3.2")]
-pub enum Format {
-    Dec,
-    SDec,
-    Hex,
-    IHex,
-    Rep,
-    Real,
-    Str,
+listed! {
+    /// How a value is written or read (MCP manual 3.3).
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+    #[expect(missing_docs, reason = "each is the word of MCP manual 3.3.2")]
+    pub enum Format {
+        Dec "DEC",
+        SDec "SDEC",
+        Hex "HEX",
+        IHex "IHEX",
+        Rep "REP",
+        Real "REAL",
+        Str "STR",
+    }
+    /// Its word.
+    #[must_use]
+    fn word;
 }
 
 impl Format {
-    /// Every one, in the order in which images number them.
-    pub const ALL: [Self; 7] =
-        [Self::Dec, Self::SDec, Self::Hex, Self::IHex, Self::Rep, Self::Real, Self::Str];
-
     /// The modifier that a word names, with the number written after it: `hex2` is `HEX` with 2.
     #[must_use]
     pub fn of_word(word: &str) -> Option<(Self, Option<u32>)> {
         let letters = word.trim_end_matches(|letter: char| letter.is_ascii_digit());
-        let format = match letters.to_ascii_lowercase().as_str() {
-            "dec" => Self::Dec,
-            "sdec" => Self::SDec,
-            "hex" => Self::Hex,
-            "ihex" => Self::IHex,
-            "rep" => Self::Rep,
-            "real" => Self::Real,
-            "str" => Self::Str,
-            _ => return None,
-        };
+        let format = Self::ALL.into_iter().find(|format| format.word().eq_ignore_ascii_case(letters))?;
         let digits = &word[letters.len()..];
         if digits.is_empty() { Some((format, None)) } else { Some((format, Some(digits.parse().ok()?))) }
-    }
-
-    /// Its word.
-    #[must_use]
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Dec => "DEC",
-            Self::SDec => "SDEC",
-            Self::Hex => "HEX",
-            Self::IHex => "IHEX",
-            Self::Rep => "REP",
-            Self::Real => "REAL",
-            Self::Str => "STR",
-        }
     }
 }
 

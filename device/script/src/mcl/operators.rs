@@ -65,6 +65,32 @@ impl Operator {
     }
 }
 
+impl Unary {
+    /// The operator of this word.
+    #[must_use]
+    pub fn of_word(word: &str) -> Option<Self> {
+        named(word).filter(|row| row.is_word()).find_map(|row| match row.does {
+            Does::One(operator) => Some(operator),
+            Does::Two(_) => None,
+        })
+    }
+}
+
+impl Binary {
+    /// The operator of this word or sign.
+    #[must_use]
+    pub fn of_name(name: &str) -> Option<Self> {
+        named(name).find_map(|row| match row.does {
+            Does::One(_) => None,
+            Does::Two(operator) => Some(operator),
+        })
+    }
+}
+
+fn named(name: &str) -> impl Iterator<Item = &'static Operator> {
+    OPERATORS.iter().filter(move |row| row.name.eq_ignore_ascii_case(name))
+}
+
 const fn one(name: &'static str, syntax: &'static str, does: Unary, help: &'static str) -> Operator {
     Operator { name, syntax, help, does: Does::One(does) }
 }
@@ -74,7 +100,7 @@ const fn two(name: &'static str, syntax: &'static str, does: Binary, help: &'sta
 }
 
 /// Every operator, by the order of MCP manual 3.2.5.
-pub const OPERATORS: [Operator; 53] = [
+pub static OPERATORS: [Operator; 53] = [
     one("NOT", "NOT x", Unary::Not, "1 when x is zero, else 0. It is worked out before any comparison."),
     one("ABS", "ABS x", Unary::Abs, "Absolute value."),
     one("SIN", "SIN x", Unary::Sin, "Sine of x in 256ths of a circle, from -127 to 128."),
@@ -143,8 +169,7 @@ mod tests {
                 }
                 Does::One(_) => assert!(["-", "~", "!"].contains(&row.name)),
                 Does::Two(operator) => {
-                    let read = Binary::of_sign(row.name).or_else(|| Binary::of_word(row.name));
-                    assert_eq!(read, Some(operator), "{}", row.name);
+                    assert_eq!(Binary::of_name(row.name), Some(operator), "{}", row.name);
                 }
             }
         }

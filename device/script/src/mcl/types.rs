@@ -1,61 +1,38 @@
 //! Types of variables and the modifiers that name a part of one (MCP manual 3.1.1, 3.1.8, 3.1.13).
 
+use crate::listed::listed;
 use serde::Serialize;
 
-/// The type of a variable, a register or a table.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum VarType {
-    /// 0 or 1.
-    Bit,
-    /// 0 to 15.
-    Nib,
-    /// 0 to 255.
-    Byte,
-    /// -128 to 127.
-    SByte,
-    /// 0 to 65535.
-    Word,
-    /// -32768 to 32767. The manual's table says 32 bits but gives this range, so 16 it is.
-    SWord,
-    /// 0 to 4294967295.
-    Long,
-    /// -2147483648 to 2147483647.
-    SLong,
-    /// A 32 bit floating point number.
-    Float,
+listed! {
+    /// The type of a variable, a register or a table.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum VarType {
+        /// 0 or 1.
+        Bit "Bit",
+        /// 0 to 15.
+        Nib "Nib",
+        /// 0 to 255.
+        Byte "Byte",
+        /// -128 to 127.
+        SByte "SByte",
+        /// 0 to 65535.
+        Word "Word",
+        /// -32768 to 32767. The manual's table says 32 bits but gives this range, so 16 it is.
+        SWord "SWord",
+        /// 0 to 4294967295.
+        Long "Long",
+        /// -2147483648 to 2147483647.
+        SLong "SLong",
+        /// A 32 bit floating point number.
+        Float "Float",
+    }
+    /// As the manual writes it.
+    #[must_use]
+    fn name;
 }
 
 impl VarType {
-    /// Every type.
-    pub const ALL: [Self; 9] = [
-        Self::Bit,
-        Self::Nib,
-        Self::Byte,
-        Self::SByte,
-        Self::Word,
-        Self::SWord,
-        Self::Long,
-        Self::SLong,
-        Self::Float,
-    ];
-
-    /// As the manual writes it.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Bit => "Bit",
-            Self::Nib => "Nib",
-            Self::Byte => "Byte",
-            Self::SByte => "SByte",
-            Self::Word => "Word",
-            Self::SWord => "SWord",
-            Self::Long => "Long",
-            Self::SLong => "SLong",
-            Self::Float => "Float",
-        }
-    }
-
     /// The type of this name, in any case.
     #[must_use]
     pub fn lookup(name: &str) -> Option<Self> {

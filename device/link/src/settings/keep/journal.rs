@@ -6,40 +6,26 @@ use thiserror::Error;
 
 use super::super::profile::{Profile, ProfileError};
 
-/// What can be done with all settings.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Act {
-    /// Settings are written to RAM.
-    Write,
-    /// RAM is saved to EEPROM.
-    Save,
-    /// The factory settings are restored in RAM.
-    Defaults,
-    /// EEPROM is loaded over RAM.
-    Reload,
-    /// The firmware is replaced.
-    Firmware,
-    /// Settings are changed for a while: a tuning run, a calibration.
-    Trial,
-}
-
-impl Act {
-    /// Every act.
-    pub const ALL: [Self; 6] =
-        [Self::Write, Self::Save, Self::Defaults, Self::Reload, Self::Firmware, Self::Trial];
-
-    /// The act as a noun: "write".
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::Write => "write",
-            Self::Save => "save",
-            Self::Defaults => "defaults",
-            Self::Reload => "reload",
-            Self::Firmware => "firmware change",
-            Self::Trial => "trial",
-        }
+brushwork_values::listed! {
+    /// What can be done with all settings.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+    #[serde(rename_all = "snake_case")]
+    pub enum Act {
+        /// Settings are written to RAM.
+        Write "write",
+        /// RAM is saved to EEPROM.
+        Save "save",
+        /// The factory settings are restored in RAM.
+        Defaults "defaults",
+        /// EEPROM is loaded over RAM.
+        Reload "reload",
+        /// The firmware is replaced.
+        Firmware "firmware change",
+        /// Settings are changed for a while: a tuning run, a calibration.
+        Trial "trial",
     }
+    /// The act as a noun: "write".
+    fn label;
 }
 
 /// What an act began with and what it was to bring.

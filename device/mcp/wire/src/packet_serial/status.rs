@@ -90,36 +90,40 @@ pub enum Condition {
     S5Signal,
 }
 
-/// The thirteen indicators of the vendor's program (MCP manual 1.2.2), in its order.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum StatusIndicator {
-    /// Current of motor 1.
-    M1OverCurrent,
-    /// Current of motor 2.
-    M2OverCurrent,
-    /// Main battery over its limit.
-    MainBatteryHigh,
-    /// Main battery under its limit.
-    MainBatteryLow,
-    /// Logic battery over its limit.
-    LogicBatteryHigh,
-    /// Logic battery under its limit.
-    LogicBatteryLow,
-    /// Board temperature.
-    Temperature1,
-    /// Second temperature.
-    Temperature2,
-    /// Bridge of motor 1.
-    M1DriverFault,
-    /// Bridge of motor 2.
-    M2DriverFault,
-    /// Emergency stop.
-    EStop,
-    /// Home input of motor 1.
-    M1Home,
-    /// Home input of motor 2.
-    M2Home,
+brushwork_values::listed! {
+    /// The thirteen indicators of the vendor's program (MCP manual 1.2.2), in its order.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+    #[serde(rename_all = "snake_case")]
+    pub enum StatusIndicator {
+        /// Current of motor 1.
+        M1OverCurrent "M1 over-current",
+        /// Current of motor 2.
+        M2OverCurrent "M2 over-current",
+        /// Main battery over its limit.
+        MainBatteryHigh "Main battery high",
+        /// Main battery under its limit.
+        MainBatteryLow "Main battery low",
+        /// Logic battery over its limit.
+        LogicBatteryHigh "Logic battery high",
+        /// Logic battery under its limit.
+        LogicBatteryLow "Logic battery low",
+        /// Board temperature.
+        Temperature1 "Temperature 1",
+        /// Second temperature.
+        Temperature2 "Temperature 2",
+        /// Bridge of motor 1.
+        M1DriverFault "M1 driver fault",
+        /// Bridge of motor 2.
+        M2DriverFault "M2 driver fault",
+        /// Emergency stop.
+        EStop "E-Stop",
+        /// Home input of motor 1.
+        M1Home "M1 home",
+        /// Home input of motor 2.
+        M2Home "M2 home",
+    }
+    /// In full.
+    fn title;
 }
 
 /// A row of the table of conditions.
@@ -196,23 +200,6 @@ impl fmt::Display for Condition {
 }
 
 impl StatusIndicator {
-    /// All thirteen, in order.
-    pub const ALL: [Self; 13] = [
-        Self::M1OverCurrent,
-        Self::M2OverCurrent,
-        Self::MainBatteryHigh,
-        Self::MainBatteryLow,
-        Self::LogicBatteryHigh,
-        Self::LogicBatteryLow,
-        Self::Temperature1,
-        Self::Temperature2,
-        Self::M1DriverFault,
-        Self::M2DriverFault,
-        Self::EStop,
-        Self::M1Home,
-        Self::M2Home,
-    ];
-
     /// The four letters of the vendor's program.
     pub const fn abbreviation(self) -> &'static str {
         match self {
@@ -229,25 +216,6 @@ impl StatusIndicator {
             Self::EStop => "ESTP",
             Self::M1Home => "M1HM",
             Self::M2Home => "M2HM",
-        }
-    }
-
-    /// In full.
-    pub const fn title(self) -> &'static str {
-        match self {
-            Self::M1OverCurrent => "M1 over-current",
-            Self::M2OverCurrent => "M2 over-current",
-            Self::MainBatteryHigh => "Main battery high",
-            Self::MainBatteryLow => "Main battery low",
-            Self::LogicBatteryHigh => "Logic battery high",
-            Self::LogicBatteryLow => "Logic battery low",
-            Self::Temperature1 => "Temperature 1",
-            Self::Temperature2 => "Temperature 2",
-            Self::M1DriverFault => "M1 driver fault",
-            Self::M2DriverFault => "M2 driver fault",
-            Self::EStop => "E-Stop",
-            Self::M1Home => "M1 home",
-            Self::M2Home => "M2 home",
         }
     }
 

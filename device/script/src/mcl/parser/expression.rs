@@ -29,8 +29,8 @@ impl Parser<'_> {
     #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn operator(&self) -> Option<Binary> {
         match self.kind() {
-            TokenKind::Sign(sign) => Binary::of_sign(sign),
-            TokenKind::Word => self.word_here().and_then(Binary::of_word),
+            TokenKind::Sign(sign) => Binary::of_name(sign),
+            TokenKind::Word => self.word_here().and_then(Binary::of_name),
             _ => None,
         }
     }

@@ -85,7 +85,7 @@ impl Parser<'_> {
         let starts_value =
             matches!(self.peek(1), TokenKind::Word | TokenKind::Integer(_) | TokenKind::Text(_));
         let letters = word.trim_end_matches(|letter: char| letter.is_ascii_digit());
-        if starts_value && crate::mcl::ast::Binary::of_word(self.word_at(self.at + 1).unwrap_or("")).is_none()
+        if starts_value && crate::mcl::ast::Binary::of_name(self.word_at(self.at + 1).unwrap_or("")).is_none()
         {
             let is_other = words::OTHER_PRODUCT.iter().any(|other| other.eq_ignore_ascii_case(letters));
             let hint = match is_other {

@@ -1,0 +1,31 @@
+//! Enums that know all their members, and a text of each.
+
+/// Defines an enum with the list of its members as `ALL`, in the order of their definition, and where each member has a text behind
+/// it, with the function that tells that text.
+#[macro_export]
+macro_rules! listed {
+    ($(#[$of:meta])* pub enum $name:ident { $($(#[$what:meta])* $member:ident,)* }) => {
+        $(#[$of])*
+        pub enum $name {
+            $($(#[$what])* $member,)*
+        }
+
+        impl $name {
+            /// All of them.
+            pub const ALL: [Self; [$(Self::$member),*].len()] = [$(Self::$member),*];
+        }
+    };
+    ($(#[$of:meta])* pub enum $name:ident { $($(#[$what:meta])* $member:ident $text:literal,)* }
+     $(#[$told:meta])* fn $tell:ident;) => {
+        $crate::listed! { $(#[$of])* pub enum $name { $($(#[$what])* $member,)* } }
+
+        impl $name {
+            $(#[$told])*
+            pub const fn $tell(self) -> &'static str {
+                match self {
+                    $(Self::$member => $text,)*
+                }
+            }
+        }
+    };
+}
