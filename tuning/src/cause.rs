@@ -3,92 +3,125 @@
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// What ended a run, or what its reader must know.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-#[non_exhaustive]
-pub enum Cause {
+macro_rules! causes {
+    ($($(#[$what:meta])* $cause:ident $sentence:literal;)*) => {
+        /// What ended a run, or what its reader must know.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+        #[serde(rename_all = "snake_case")]
+        #[non_exhaustive]
+        pub enum Cause {
+            $($(#[$what])* $cause,)*
+            /// What was seen says nothing about the machine, since the answers came too late.
+            AnsweredLate {
+                /// The longest time between two answers, ms.
+                longest_gap_ms: u32,
+            },
+        }
+
+        impl Cause {
+            /// One sentence or two: what was seen and what to do.
+            #[must_use]
+            pub fn sentence(self) -> Cow<'static, str> {
+                match self {
+                    $(Self::$cause => $sentence.into(),)*
+                    Self::AnsweredLate { longest_gap_ms } => answered_late(longest_gap_ms).into(),
+                }
+            }
+        }
+    };
+}
+
+causes! {
     /// Counts go down while duty goes up.
-    EncoderReversed,
+    EncoderReversed "The encoder counts down while the motor is driven up. Swap the encoder's A and B, or the motor leads, or set \
+        the encoder's reverse option.";
     /// The motor draws a running current, but nothing is counted.
-    EncoderDead,
+    EncoderDead "The motor draws the current of a turning motor, but the encoder counts nothing. Check the encoder's plug, supply \
+        and input.";
     /// No current flows, nothing moves.
-    MotorOpen,
+    MotorOpen "No current flows and nothing moves. Check the motor leads and the bridge; if this controller measures no currents, \
+        the shaft and the encoder too.";
     /// Nothing moves, and the controller reports no current.
-    NothingCounted,
+    NothingCounted "Nothing was counted while the motor was driven, and the controller reports no current that would say why. Check \
+        the encoder, the motor leads and whether the shaft is free.";
     /// Current as of a motor that stands, nothing moves.
-    ShaftLocked,
+    ShaftLocked "The motor draws the current of a standing motor and nothing is counted. Free the shaft, or release its brake.";
     /// Counts stopped in mid-run while the motor went on.
-    EncoderLost,
+    EncoderLost "The encoder stopped counting while the motor went on. Check its plug and cable.";
     /// The motor stopped in mid-run with its current high.
-    Stalled,
+    Stalled "The motor was stopped by something: an end stop or a jam. Look there, then set the travel.";
     /// The current stopped in mid-run.
-    MotorOpened,
+    MotorOpened "The motor current stopped in mid-run. Check the motor leads.";
     /// Counts turned their sign in mid-run.
-    EncoderFlipped,
+    EncoderFlipped "The encoder changed its direction in mid-run. Check its wiring for a loose lead.";
     /// The travel window would have been left.
-    TravelLimit,
+    TravelLimit "The axis came to the end of its travel window. Start nearer to the middle, or widen the window.";
     /// The main battery is low.
-    BatteryLow,
+    BatteryLow "The main battery is low. Charge it, or use a stronger supply.";
     /// The controller reports a fault.
-    ControllerFault,
+    ControllerFault "The controller reports a fault. Read its status, clear it, and try again.";
     /// The current went beyond the highest that the run was allowed.
-    OverCurrent,
+    OverCurrent "The current went beyond the highest that was allowed. Allow more, or lower the highest duty.";
     /// No replies.
-    LinkLost,
+    LinkLost "The controller stopped answering. Check the cable; the controller stops the motor by itself, by its time-out or at the \
+        limits of the run.";
     /// The user, the window or the device thread stopped it.
-    Stopped,
+    Stopped "The run was stopped.";
     /// The run took too long.
-    TimeLimit,
+    TimeLimit "The run took longer than it may. A very slow axis needs a higher time limit.";
     /// The controller did not take the current limit of the run.
-    LimitNotTaken,
+    LimitNotTaken "The controller did not take the current limit of the run, so the motor was not driven. Leave the limit out, or \
+        set it in the settings.";
     /// The axis does not stand inside its travel window.
-    OutsideTravel,
+    OutsideTravel "The axis stands outside its travel window. Move it inside, or give a window around where it stands.";
     /// The travel window is too narrow for the encoder, or the axis stands too near to its end.
-    NarrowTravel,
+    NarrowTravel "The axis stands too near to an end of its travel window, or the window is too narrow. Move it to the middle, or \
+        widen the window.";
     /// The controller does not take a command of the run.
-    Refused,
+    Refused "The controller did not take a command. See the log for which.";
     /// Inductance and resistance are set, so that duty is a current.
-    TorqueMode,
+    TorqueMode "Motor inductance and resistance are both set, which turns duty into current. Have them cleared for the run; they are \
+        put back after it.";
     /// An absolute encoder that wraps gives no speed.
-    WrappingEncoder,
+    WrappingEncoder "An absolute encoder that wraps has no speed that a loop could use. Tune the position instead.";
     /// The encoder is too coarse, or the axis too slow, for the polls.
-    TooCoarse,
+    TooCoarse "The encoder gives too few counts for this axis. A finer one is needed.";
     /// The model does not explain the record.
-    PoorFit,
+    PoorFit "The motion does not follow the model of a motor. Look for slipping parts, a loose encoder or noise.";
     /// The two directions differ by more than a quarter.
-    Lopsided,
+    Lopsided "The two directions differ by more than a quarter. Look for a load that pulls, or a jam.";
     /// More than half of the record is held by the current limit.
-    CurrentLimited,
+    CurrentLimited "The current limit held the motor back for most of the run. Raise it, or lower the load.";
     /// The verification found the loop worse than predicted, at the lowest gains too.
-    NotVerified,
+    NotVerified "The loop was worse than predicted, at low gains too. The old gains are back in force.";
     /// The lag of the loop could not be measured; the gains assume the usual one.
-    LagUnknown,
+    LagUnknown "The lag of the controller's loop could not be measured; the gains assume the usual one.";
     /// The gains were lowered since the measured loop was rougher than predicted.
-    BackedOff,
+    BackedOff "The gains were lowered, since the measured loop was rougher than predicted.";
     /// The two directions differ by more than 5 %.
-    Asymmetric,
+    Asymmetric "The two directions differ by more than 5 %.";
     /// A constant load is stronger than the friction: the axis does not stay where it is without drive.
-    HeavyLoad,
+    HeavyLoad "A constant load, a weight or a spring, pulls harder than friction holds: without drive the axis moves. Balance it, or \
+        tune the position as PIV, whose integral carries the load.";
     /// The controller's loop follows no law that is known.
-    UnknownLaw,
+    UnknownLaw "The controller's loop follows no law known to this program, so gains cannot be computed for it.";
     /// The controller is not in the mode in which it can be tuned.
-    WrongMode,
+    WrongMode "The Motion Mind is not in mode 4 with an encoder, the only mode that takes both a duty and a position over the wire. \
+        Set its switches to mode 4, clear PULSEFB, and switch it off and on.";
     /// The controller has no loop of this kind.
-    NoSuchLoop,
+    NoSuchLoop "This controller has no velocity loop under its position loop. Tune the position as PD or PID.";
     /// Bits of the controller are set that make another loop of its gains, or none.
-    OtherLoop,
+    OtherLoop "NEWVELMODE, FASTPID, PULSEFB or DISABLEPID is set, which makes another loop of these gains, or none. Clear the bit: \
+        the gains are those of the loop that computes every 5 ms from the encoder's position.";
     /// A limit or brake input of the controller is at ground.
-    LimitInput,
+    LimitInput "A limit input or the brake input of the controller is at ground, which takes the motor's drive away. Move the axis \
+        off its limit switch, or release the brake; on an axis with switches give the travel between them.";
     /// The loop of the controller was left switched off at the end of a run that found something wrong with the machine.
-    LoopOff,
+    LoopOff "The controller's loop was left switched off (DISABLEPID in FUNCTION, in RAM), since with this it could drive the motor \
+        away. When the fault is remedied, arm or drive again: that switches the loop on where the motor stands.";
     /// Nothing moves, and the current cannot be distinguished from its own noise.
-    CurrentUnclear,
-    /// What was seen says nothing about the machine, since the answers came too late.
-    AnsweredLate {
-        /// The longest time between two answers, ms.
-        longest_gap_ms: u32,
-    },
+    CurrentUnclear "The motor was driven and not seen to move, and its current is no higher than the noise of its readings, so it \
+        does not say why. Check the motor leads, the encoder's plug, and whether the shaft is free or at an end stop.";
 }
 
 impl Cause {
@@ -151,126 +184,6 @@ impl Cause {
                 | Self::Stalled
                 | Self::MotorOpened
         )
-    }
-
-    /// One sentence or two: what was seen and what to do.
-    #[must_use]
-    pub fn sentence(self) -> Cow<'static, str> {
-        Cow::Borrowed(match self {
-            Self::AnsweredLate { longest_gap_ms } => return answered_late(longest_gap_ms).into(),
-            Self::CurrentUnclear => {
-                "The motor was driven and not seen to move, and its current is no higher than the noise of its readings, so it does \
-                 not say why. Check the motor leads, the encoder's plug, and whether the shaft is free or at an end stop."
-            }
-            Self::EncoderReversed => {
-                "The encoder counts down while the motor is driven up. Swap the encoder's A and B, or the motor leads, or set the \
-                 encoder's reverse option."
-            }
-            Self::EncoderDead => {
-                "The motor draws the current of a turning motor, but the encoder counts nothing. Check the encoder's plug, supply \
-                 and input."
-            }
-            Self::MotorOpen => {
-                "No current flows and nothing moves. Check the motor leads and the bridge; if this controller measures no currents, \
-                 the shaft and the encoder too."
-            }
-            Self::NothingCounted => {
-                "Nothing was counted while the motor was driven, and the controller reports no current that would say why. Check the \
-                 encoder, the motor leads and whether the shaft is free."
-            }
-            Self::ShaftLocked => {
-                "The motor draws the current of a standing motor and nothing is counted. Free the shaft, or release its brake."
-            }
-            Self::EncoderLost => {
-                "The encoder stopped counting while the motor went on. Check its plug and cable."
-            }
-            Self::Stalled => {
-                "The motor was stopped by something: an end stop or a jam. Look there, then set the travel."
-            }
-            Self::MotorOpened => "The motor current stopped in mid-run. Check the motor leads.",
-            Self::EncoderFlipped => {
-                "The encoder changed its direction in mid-run. Check its wiring for a loose lead."
-            }
-            Self::TravelLimit => {
-                "The axis came to the end of its travel window. Start nearer to the middle, or widen the window."
-            }
-            Self::BatteryLow => "The main battery is low. Charge it, or use a stronger supply.",
-            Self::ControllerFault => {
-                "The controller reports a fault. Read its status, clear it, and try again."
-            }
-            Self::OverCurrent => {
-                "The current went beyond the highest that was allowed. Allow more, or lower the highest duty."
-            }
-            Self::LinkLost => {
-                "The controller stopped answering. Check the cable; the controller stops the motor by itself, by its time-out or at the \
-                 limits of the run."
-            }
-            Self::Stopped => "The run was stopped.",
-            Self::TimeLimit => "The run took longer than it may. A very slow axis needs a higher time limit.",
-            Self::LimitNotTaken => {
-                "The controller did not take the current limit of the run, so the motor was not driven. Leave the limit out, or set \
-                 it in the settings."
-            }
-            Self::OutsideTravel => {
-                "The axis stands outside its travel window. Move it inside, or give a window around where it stands."
-            }
-            Self::NarrowTravel => {
-                "The axis stands too near to an end of its travel window, or the window is too narrow. Move it to the middle, or \
-                 widen the window."
-            }
-            Self::Refused => "The controller did not take a command. See the log for which.",
-            Self::TorqueMode => {
-                "Motor inductance and resistance are both set, which turns duty into current. Have them cleared for the run; they \
-                 are put back after it."
-            }
-            Self::WrappingEncoder => {
-                "An absolute encoder that wraps has no speed that a loop could use. Tune the position instead."
-            }
-            Self::TooCoarse => "The encoder gives too few counts for this axis. A finer one is needed.",
-            Self::PoorFit => {
-                "The motion does not follow the model of a motor. Look for slipping parts, a loose encoder or noise."
-            }
-            Self::Lopsided => {
-                "The two directions differ by more than a quarter. Look for a load that pulls, or a jam."
-            }
-            Self::CurrentLimited => {
-                "The current limit held the motor back for most of the run. Raise it, or lower the load."
-            }
-            Self::NotVerified => {
-                "The loop was worse than predicted, at low gains too. The old gains are back in force."
-            }
-            Self::LagUnknown => {
-                "The lag of the controller's loop could not be measured; the gains assume the usual one."
-            }
-            Self::BackedOff => "The gains were lowered, since the measured loop was rougher than predicted.",
-            Self::Asymmetric => "The two directions differ by more than 5 %.",
-            Self::HeavyLoad => {
-                "A constant load, a weight or a spring, pulls harder than friction holds: without drive the axis moves. Balance it, or \
-                 tune the position as PIV, whose integral carries the load."
-            }
-            Self::UnknownLaw => {
-                "The controller's loop follows no law known to this program, so gains cannot be computed for it."
-            }
-            Self::WrongMode => {
-                "The Motion Mind is not in mode 4 with an encoder, the only mode that takes both a duty and a position over the wire. \
-                 Set its switches to mode 4, clear PULSEFB, and switch it off and on."
-            }
-            Self::NoSuchLoop => {
-                "This controller has no velocity loop under its position loop. Tune the position as PD or PID."
-            }
-            Self::LimitInput => {
-                "A limit input or the brake input of the controller is at ground, which takes the motor's drive away. Move the axis \
-                 off its limit switch, or release the brake; on an axis with switches give the travel between them."
-            }
-            Self::LoopOff => {
-                "The controller's loop was left switched off (DISABLEPID in FUNCTION, in RAM), since with this it could drive the \
-                 motor away. When the fault is remedied, arm or drive again: that switches the loop on where the motor stands."
-            }
-            Self::OtherLoop => {
-                "NEWVELMODE, FASTPID, PULSEFB or DISABLEPID is set, which makes another loop of these gains, or none. Clear the bit: \
-                 the gains are those of the loop that computes every 5 ms from the encoder's position."
-            }
-        })
     }
 }
 
