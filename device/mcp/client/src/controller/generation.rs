@@ -32,47 +32,21 @@ struct Probe {
 
 /// Lengths with CRC (public clients, 2015-2025).
 const PROBES: [Probe; 5] = [
-    Probe {
-        command: number::READ_STATUS,
-        short: 4,
-        long: 6,
-        long_since: Generation::Gen3,
-        subindex: 0,
-        long_width: 4,
-    },
-    Probe {
-        command: number::READ_MAIN_VOLTAGES,
-        short: 6,
-        long: 7,
-        long_since: Generation::Gen4,
-        subindex: 3,
-        long_width: 1,
-    },
-    Probe {
-        command: number::READ_DEFAULT_ACCELS,
-        short: 10,
-        long: 18,
-        long_since: Generation::Gen2,
-        subindex: 3,
-        long_width: 4,
-    },
-    Probe {
-        command: number::READ_PWM_MODE,
-        short: 3,
-        long: 4,
-        long_since: Generation::Gen3,
-        subindex: 1,
-        long_width: 1,
-    },
-    Probe {
-        command: number::READ_ADDRESS_MIXED,
-        short: 3,
-        long: 4,
-        long_since: Generation::Gen2,
-        subindex: 1,
-        long_width: 1,
-    },
+    probe(number::READ_STATUS, [4, 6], Generation::Gen3, (0, 4)),
+    probe(number::READ_MAIN_VOLTAGES, [6, 7], Generation::Gen4, (3, 1)),
+    probe(number::READ_DEFAULT_ACCELS, [10, 18], Generation::Gen2, (3, 4)),
+    probe(number::READ_PWM_MODE, [3, 4], Generation::Gen3, (1, 1)),
+    probe(number::READ_ADDRESS_MIXED, [3, 4], Generation::Gen2, (1, 1)),
 ];
+
+const fn probe(
+    command: u8,
+    [short, long]: [usize; 2],
+    long_since: Generation,
+    (subindex, long_width): (u8, usize),
+) -> Probe {
+    Probe { command, short, long, long_since, subindex, long_width }
+}
 
 /// Asks the unit at `address`. A contradiction is asked about once more, since one reply in 65536 fits by chance.
 pub fn detect(line: &mut Line<'_>, address: Address) -> Result<Finding, ExchangeError> {
