@@ -21,3 +21,20 @@ pub enum SettingValue {
     /// read from a unit.
     UnknownCode(i64),
 }
+
+impl SettingValue {
+    /// The whole number, where it is one.
+    pub fn int(self) -> Option<i64> {
+        if let Self::Int(number) = self { Some(number) } else { None }
+    }
+
+    /// The number with decimals, where it is one.
+    pub fn number(self) -> Option<f64> {
+        if let Self::Number(number) = self { Some(number) } else { None }
+    }
+
+    /// The key of the choice, where it is one.
+    pub fn choice(self) -> Option<&'static str> {
+        if let Self::Choice(key) = self { Some(key) } else { None }
+    }
+}

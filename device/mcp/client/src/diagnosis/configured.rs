@@ -87,20 +87,16 @@ fn script(settings: &SettingsImage, evidence: &Evidence<'_>) -> Option<Finding> 
     if started.is_some() || evidence.script == Script::Stopped {
         return started;
     }
-    match settings.get("script.autorun_delay")? {
-        SettingValue::Int(delay_ms) if delay_ms >= AUTORUN_FROM_MS => Some(finding(
+    let delay_ms = settings.get("script.autorun_delay")?.int()?;
+    (delay_ms >= AUTORUN_FROM_MS).then(|| {
+        finding(
             BlocksSome,
             format!(
                 "a script that starts {delay_ms} ms after power-up may be at work and command the motors itself"
             ),
             "Press Stop All, which ends it, or set the script autorun delay to 0",
-        )),
-        SettingValue::Bool(_)
-        | SettingValue::Int(_)
-        | SettingValue::Number(_)
-        | SettingValue::Choice(_)
-        | SettingValue::UnknownCode(_) => None,
-    }
+        )
+    })
 }
 
 fn started_script(evidence: &Evidence<'_>) -> Option<Finding> {
@@ -177,11 +173,5 @@ fn named(motors: &[u8]) -> Option<String> {
 }
 
 fn whole(settings: &SettingsImage, motor: u8, what: &str) -> Option<i64> {
-    match settings.get(&format!("motor{motor}.{what}"))? {
-        SettingValue::Int(value) => Some(value),
-        SettingValue::Bool(_)
-        | SettingValue::Number(_)
-        | SettingValue::Choice(_)
-        | SettingValue::UnknownCode(_) => None,
-    }
+    settings.get(&format!("motor{motor}.{what}"))?.int()
 }

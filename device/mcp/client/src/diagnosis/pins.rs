@@ -103,10 +103,8 @@ fn split(key: &'static str) -> (&'static [usize], &'static str) {
 
 /// Inputs that command a motor from a priority level above Serial's (MCP manual 1.2.10, command 139).
 fn held_by_others(settings: &SettingsImage, evidence: &Evidence<'_>) -> Vec<Finding> {
-    let levels = [1, 2, 3].map(|level| match settings.get(&format!("priority.{level}")) {
-        Some(SettingValue::Choice(key)) => key,
-        _ => "",
-    });
+    let level = |level| settings.get(&format!("priority.{level}"))?.choice();
+    let levels = [1, 2, 3].map(|number: u8| level(number).unwrap_or(""));
     let Some(serial) = levels.iter().position(|level| *level == "serial") else { return Vec::new() };
     let above = levels[..serial].iter().enumerate();
     above.filter_map(|(level, kind)| held_by(settings, evidence, level + 1, kind, serial + 1)).collect()
@@ -161,23 +159,11 @@ fn is_used(settings: &SettingsImage, pin: usize) -> bool {
 }
 
 fn choice(settings: &SettingsImage, pin: usize, what: &str) -> Option<&'static str> {
-    match settings.get(&key(pin, what))? {
-        SettingValue::Choice(key) => Some(key),
-        SettingValue::Bool(_)
-        | SettingValue::Int(_)
-        | SettingValue::Number(_)
-        | SettingValue::UnknownCode(_) => None,
-    }
+    settings.get(&key(pin, what))?.choice()
 }
 
 fn int(settings: &SettingsImage, pin: usize, what: &str) -> Option<i64> {
-    match settings.get(&key(pin, what))? {
-        SettingValue::Int(number) => Some(number),
-        SettingValue::Bool(_)
-        | SettingValue::Number(_)
-        | SettingValue::Choice(_)
-        | SettingValue::UnknownCode(_) => None,
-    }
+    settings.get(&key(pin, what))?.int()
 }
 
 fn key(pin: usize, what: &str) -> String {

@@ -102,14 +102,7 @@ fn battery(indicator: &Indicator, evidence: &Evidence<'_>) -> Finding {
         ("main", "main_battery", evidence.measured.main_volts)
     };
     let end = if is_high { "max_volts" } else { "min_volts" };
-    let limit =
-        evidence.settings.and_then(|settings| match settings.get(&format!("limits.{key}.{end}"))? {
-            SettingValue::Number(limit) => Some(limit),
-            SettingValue::Bool(_)
-            | SettingValue::Int(_)
-            | SettingValue::Choice(_)
-            | SettingValue::UnknownCode(_) => None,
-        });
+    let limit = evidence.settings.and_then(|settings| settings.get(&format!("limits.{key}.{end}"))?.number());
     let which = if is_high { "above its maximum" } else { "below its minimum" };
     let exceeded = |volts: f64, limit: f64| if is_high { volts > limit } else { volts < limit };
     let what = match (volts, limit) {

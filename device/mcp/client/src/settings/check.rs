@@ -44,17 +44,13 @@ pub(super) fn dangers(table: &SettingsTable, after: &SettingsImage, changes: &Se
 
 /// One motor on both channels, or one on each: the wiring must fit before power is put on it (MCP manual 1.8).
 fn bridging(changes: &SettingsImage) -> Option<&'static str> {
-    match changes.get(BRIDGE_CHANNELS)? {
-        SettingValue::Bool(true) => Some(BRIDGE_WARNING),
-        SettingValue::Bool(_)
-        | SettingValue::Int(_)
-        | SettingValue::Number(_)
-        | SettingValue::Choice(_)
-        | SettingValue::UnknownCode(_) => Some(
+    Some(match changes.get(BRIDGE_CHANNELS)? == SettingValue::Bool(true) {
+        true => BRIDGE_WARNING,
+        false => {
             "The channels are separate again: take the single motor off both of them before this is written, or the \
-             controller is damaged. MCP manual 1.8.",
-        ),
-    }
+             controller is damaged. MCP manual 1.8."
+        }
+    })
 }
 
 /// Without the serial input in a priority level this program may not move a motor.
@@ -94,10 +90,7 @@ fn input_danger(
     pin: usize,
 ) -> Option<String> {
     let key = |field: &str| format!("pin.{pin}.{field}");
-    let choice = |key: &str| match after.get(key) {
-        Some(SettingValue::Choice(choice)) => Some(choice),
-        _ => None,
-    };
+    let choice = |key: &str| after.get(key)?.choice();
     let (kind, target) = (choice(&key("type"))?, choice(&key("target"))?);
     let level = (1..=3).find(|level| choice(&format!("priority.{level}")) == Some(kind))?;
     let level_key = format!("priority.{level}");

@@ -20,7 +20,9 @@ pub fn pin_place(fit: &Fit<'_>, pin: usize) -> Option<usize> {
     }
     let wanted = from.pins.get(pin)?;
     let there = if serves_encoder(fit, pin) {
-        to.pins.iter().position(|other| channel(other).is_some() && channel(other) == channel(wanted))
+        to.pins.iter().position(|other| {
+            other.encoder_channel().is_some() && other.encoder_channel() == wanted.encoder_channel()
+        })
     } else {
         let named = to.pins.iter().position(|other| other.name() == wanted.name());
         // That one is taken by an encoder of the profile.
@@ -32,13 +34,16 @@ pub fn pin_place(fit: &Fit<'_>, pin: usize) -> Option<usize> {
 fn serves_encoder(fit: &Fit<'_>, pin: usize) -> bool {
     let kind = fit.profile.settings.get(&format!("pin.{}.type", pin + 1));
     kind == Some(SettingValue::Choice("encoder"))
-        && models(fit).and_then(|(from, _)| from.pins.get(pin)).is_some_and(|pin| channel(pin).is_some())
+        && models(fit)
+            .and_then(|(from, _)| from.pins.get(pin))
+            .is_some_and(|pin| pin.encoder_channel().is_some())
 }
 
 fn is_encoder_place(fit: &Fit<'_>, there: usize) -> bool {
     let Some((from, to)) = models(fit) else { return false };
-    let Some(wanted) = to.pins.get(there).and_then(channel) else { return false };
-    (0..from.pins.len()).any(|pin| serves_encoder(fit, pin) && channel(&from.pins[pin]) == Some(wanted))
+    let Some(wanted) = to.pins.get(there).and_then(|pin| pin.encoder_channel()) else { return false };
+    (0..from.pins.len())
+        .any(|pin| serves_encoder(fit, pin) && from.pins[pin].encoder_channel() == Some(wanted))
 }
 
 /// Encoder inputs are numbers in the pin list, which is another one there.
@@ -49,8 +54,9 @@ pub fn encoder_pin(fit: &Fit<'_>, value: SettingValue) -> Option<SettingValue> {
         return Some(value);
     }
     let wanted = from.pins.get(usize::try_from(number).ok()?)?;
-    let by_channel = |pin: &Pin| channel(wanted).is_some() && channel(pin) == channel(wanted);
-    let by_name = |pin: &Pin| channel(wanted).is_none() && pin.name() == wanted.name();
+    let by_channel =
+        |pin: &Pin| wanted.encoder_channel().is_some() && pin.encoder_channel() == wanted.encoder_channel();
+    let by_name = |pin: &Pin| wanted.encoder_channel().is_none() && pin.name() == wanted.name();
     let there = to.pins.iter().position(|pin| by_channel(pin) || by_name(pin))?;
     i64::try_from(there).ok().map(SettingValue::Int)
 }
@@ -61,15 +67,11 @@ pub fn impossible_type(fit: &Fit<'_>, there: &Row, value: SettingValue) -> Optio
         return None;
     }
     let pin = models(fit)?.1.pins.get(there.instance.as_ref()?.number - 1)?;
-    let is_possible = match value {
-        SettingValue::Choice("analog") => pin.is_analog(),
-        SettingValue::Choice("pulse") => pin.is_pulse(),
-        SettingValue::Choice("encoder") => channel(pin).is_some(),
-        SettingValue::Bool(_)
-        | SettingValue::Int(_)
-        | SettingValue::Number(_)
-        | SettingValue::Choice(_)
-        | SettingValue::UnknownCode(_) => true,
+    let is_possible = match value.choice()? {
+        "analog" => pin.is_analog(),
+        "pulse" => pin.is_pulse(),
+        "encoder" => pin.encoder_channel().is_some(),
+        _ => true,
     };
     (!is_possible).then(|| {
         format!(
@@ -79,8 +81,4 @@ pub fn impossible_type(fit: &Fit<'_>, there: &Row, value: SettingValue) -> Optio
             fit.to.subject().model.name
         )
     })
-}
-
-fn channel(pin: &Pin) -> Option<(u8, char)> {
-    pin.encoder_channel()
 }

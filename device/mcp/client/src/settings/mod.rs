@@ -45,14 +45,7 @@ impl FamilySettings for McpSettings {
 
     /// The pin behind an encoder input number, as far as we assume it.
     fn note(&self, table: &SettingsTable, row: &Row, value: SettingValue) -> Option<String> {
-        let number = match value {
-            SettingValue::Int(number) if row.pattern == ENCODER_PIN => number,
-            SettingValue::Bool(_)
-            | SettingValue::Int(_)
-            | SettingValue::Number(_)
-            | SettingValue::Choice(_)
-            | SettingValue::UnknownCode(_) => return None,
-        };
+        let number = value.int().filter(|_| row.pattern == ENCODER_PIN)?;
         if number == ENCODER_PIN_NONE {
             return Some("none, assumed".to_owned());
         }

@@ -65,13 +65,11 @@ pub fn warnings(context: &PlanContext<'_>, steps: &[Step]) -> Vec<String> {
                 "Mixing is written together with the address, which this firmware does not report: {} \
                  is written, the address this link speaks to. Over USB a unit answers to every \
                  address, so check it first.",
-                context.ram.get("unit.address").map_or_else(String::new, |address| match address {
-                    SettingValue::Int(byte) => format!("0x{byte:02X}"),
-                    SettingValue::Bool(_)
-                    | SettingValue::Number(_)
-                    | SettingValue::Choice(_)
-                    | SettingValue::UnknownCode(_) => String::new(),
-                })
+                context
+                    .ram
+                    .get("unit.address")
+                    .and_then(SettingValue::int)
+                    .map_or_else(String::new, |byte| format!("0x{byte:02X}"))
             )),
             (number::SET_STREAM, Stage::OwnPort) => warnings.extend(own_port_warnings(context)),
             (number::SET_CONFIG, _) => warnings.push(

@@ -33,10 +33,7 @@ pub fn weaken_first(steps: &mut [Step], ram: &SettingsImage) {
         return;
     };
     let wanted = steps[scalar].arguments.get(1).map(|(_, value)| *value);
-    let held = match ram.get("register.pidscalar") {
-        Some(SettingValue::Int(held)) => Some(held),
-        _ => None,
-    };
+    let held = ram.get("register.pidscalar").and_then(SettingValue::int);
     if first < scalar && wanted > held {
         steps[first..=scalar].rotate_right(1);
     }

@@ -30,21 +30,12 @@ impl<'a> PinValues<'a> {
     }
 
     pub(super) fn number(self, field: &str) -> Option<f64> {
-        match (self.get)(&self.key(field))? {
-            SettingValue::Int(number) => Some(number as f64),
-            SettingValue::Number(number) => Some(number),
-            SettingValue::Bool(_) | SettingValue::Choice(_) | SettingValue::UnknownCode(_) => None,
-        }
+        let value = (self.get)(&self.key(field))?;
+        value.number().or(value.int().map(|number| number as f64))
     }
 }
 
 /// The choice that stands under a key.
 pub(super) fn choice(get: Lookup<'_>, key: &str) -> Option<&'static str> {
-    match get(key)? {
-        SettingValue::Choice(choice) => Some(choice),
-        SettingValue::Bool(_)
-        | SettingValue::Int(_)
-        | SettingValue::Number(_)
-        | SettingValue::UnknownCode(_) => None,
-    }
+    get(key)?.choice()
 }
