@@ -37,6 +37,29 @@ pub(crate) struct Template {
     pub(crate) help: &'static str,
 }
 
+/// A table of settings: for each what its [`Template`] says, the forms of its commands in brackets, and its help.
+macro_rules! settings {
+    ($($row:ident($($own:expr),*) $(.$part:ident($($given:expr),*))*; [$($form:expr),*] $help:expr;)*) => {
+        &[$($row($($own),*)$(.$part($($given),*))*.forms(&[$($form),*]).help($help)),*]
+    };
+}
+pub(crate) use settings;
+
+/// A setting of the unit.
+pub(crate) const fn setting(key: &'static str, label: &'static str, group: Group) -> Template {
+    Template::new(key, label, group)
+}
+
+/// A setting that an MCP alone has.
+pub(crate) const fn mcp(key: &'static str, label: &'static str, group: Group) -> Template {
+    Template::new(key, label, group).only_on(Family::Mcp)
+}
+
+/// A setting of each motor.
+pub(crate) const fn motor(key: &'static str, label: &'static str, group: Group) -> Template {
+    Template::new(key, label, group).per(Repeat::Motors)
+}
+
 impl Template {
     /// A yes-or-no line that every model has, once; the builders below say otherwise.
     pub(crate) const fn new(key: &'static str, label: &'static str, group: Group) -> Self {

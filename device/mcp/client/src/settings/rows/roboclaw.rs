@@ -8,142 +8,102 @@ use brushwork_values::Code;
 use brushwork_values::Unit;
 
 use crate::settings::rows::scales::{GEN1, GEN2, GEN3, GEN4, U8_STEPS};
-use crate::settings::template::{DefaultValue, Form, Limits, Repeat, Template, at};
+use crate::settings::template::{DefaultValue, Form, Limits, Repeat, Template, at, settings};
 use brushwork_link::settings::Coding;
 use brushwork_link::settings::Group;
 
-pub(crate) static ROWS: &[Template] = &[
-    roboclaw("roboclaw.pin.{n}", "Function")
-        .per(Repeat::RoboClawPins)
-        .int(Unit::None, U8_STEPS)
-        .assumed_default(DefaultValue::Int(0))
-        .forms(&[Form::field(
-            &[number::READ_PIN_FUNCTIONS],
-            &[number::SET_PIN_FUNCTIONS],
-            &["s3", "s4", "s5", "d1", "d2"],
-        )])
-        .help("The number of the pin's function: E-Stop, voltage clamp, home switch and others. Command 74."),
-    roboclaw("roboclaw.deadband.reverse", "Reverse deadband")
-        .int(Unit::None, U8_STEPS)
-        .assumed_default(DefaultValue::Int(0))
-        .forms(&[control(&["deadband_min"]).only(GEN1, GEN2)])
-        .help("How far below center the RC and analog inputs still count as 0. Command 76."),
-    roboclaw("roboclaw.deadband.forward", "Forward deadband")
-        .int(Unit::None, U8_STEPS)
-        .assumed_default(DefaultValue::Int(0))
-        .forms(&[control(&["deadband_max"]).only(GEN1, GEN2)])
-        .help("How far above center the RC and analog inputs still count as 0. Command 76."),
-    input("roboclaw.{n}.reverse_deadband", "Reverse deadband")
-        .int(Unit::None, U8_STEPS)
-        .forms(&[
-            control(&["s1_min", "s2_min"]).only(GEN3, GEN3),
-            control(&["s1_reverse_deadband", "s2_reverse_deadband"]).only(GEN4, GEN4),
-        ])
-        .help("How far below center the input still counts as 0. Command 76."),
-    input("roboclaw.{n}.forward_deadband", "Forward deadband")
-        .int(Unit::None, U8_STEPS)
-        .forms(&[
-            control(&["s1_max", "s2_max"]).only(GEN3, GEN3),
-            control(&["s1_forward_deadband", "s2_forward_deadband"]).only(GEN4, GEN4),
-        ])
-        .help("How far above center the input still counts as 0. Command 76."),
-    input("roboclaw.{n}.reverse_limit", "Reverse limit")
-        .int(Unit::None, U16_STEPS)
-        .forms(&[control(&["s1_reverse_limit", "s2_reverse_limit"]).only(GEN4, GEN4)])
-        .help("The most that the input commands backward. Command 76."),
-    input("roboclaw.{n}.forward_limit", "Forward limit")
-        .int(Unit::None, U16_STEPS)
-        .forms(&[control(&["s1_forward_limit", "s2_forward_limit"]).only(GEN4, GEN4)])
-        .help("The most that the input commands forward. Command 76."),
-    input("roboclaw.{n}.center", "Center")
-        .int(Unit::None, U16_STEPS)
-        .forms(&[control(&["s1_center", "s2_center"]).only(GEN4, GEN4)])
-        .help("The value of the input at rest. Command 76."),
-    input("roboclaw.{n}.min", "Minimum")
-        .int(Unit::None, U16_STEPS)
-        .forms(&[control(&["s1_min", "s2_min"]).only(GEN4, GEN4)])
-        .help("The lowest value of the input. Command 76."),
-    input("roboclaw.{n}.max", "Maximum")
-        .int(Unit::None, U16_STEPS)
-        .forms(&[control(&["s1_max", "s2_max"]).only(GEN4, GEN4)])
-        .help("The highest value of the input. Command 76."),
-    input("roboclaw.{n}.output_min", "Output minimum")
-        .fixed(Unit::Percent, OUTPUT, 1, U16_STEPS)
-        .assumed_default(DefaultValue::Number(0.0))
-        .forms(&[output(&["s1_min", "s2_min"])])
-        .help("The share of full output that the low end of the input commands. Command 117."),
-    input("roboclaw.{n}.output_max", "Output maximum")
-        .fixed(Unit::Percent, OUTPUT, 1, U16_STEPS)
-        .assumed_default(DefaultValue::Number(0.0))
-        .forms(&[output(&["s1_max", "s2_max"])])
-        .help("The share of full output that the high end of the input commands. Command 117."),
-    roboclaw("roboclaw.ctrl{n}.mode", "Mode")
-        .per(Repeat::Ctrls)
-        .int(Unit::None, Limits::Between(0.0, 3.0))
-        .assumed_default(DefaultValue::Int(0))
-        // Commands 100 and 101 carry the CTRL modes in these generations; their names are those of generation
-        // 4.
-        .forms(&[Form::field(&[number::READ_TEMPERATURES], &[number::READ_VOLTS], &["mode_1", "mode_2"])
-            .only(GEN2, GEN3)])
-        .help("The number of what the CTRL output does. Command 100."),
-    roboclaw("roboclaw.config.word", "Configuration word")
-        .int(Unit::Bits, U16_STEPS)
-        .assumed_default(DefaultValue::Int(0))
-        .forms(&[Form::read_only(
-            at(&[number::READ_CONFIG], &["config"]),
-            "The word as a whole is shown for comparison; change its parts below.",
-        )])
-        .help("All of the configuration in one number. Command 99."),
-    roboclaw("roboclaw.config.mode", "Control mode")
-        .forms(&[config(0, 2)])
-        .choice(CONTROL_MODES)
-        .assumed_default(DefaultValue::Key("rc"))
-        .help(
-            "What commands the motors. Anything but packet serial ends this connection. Command 98, bits 0 \
-             and 1.",
-        ),
-    roboclaw("roboclaw.config.battery", "Battery mode")
-        .forms(&[config(2, 3)])
-        .int(Unit::None, Limits::Between(0.0, 7.0))
-        .assumed_default(DefaultValue::Int(0))
-        .help("Off, detected at power up, or a number of lithium cells. Command 98, bits 2 to 4."),
-    roboclaw("roboclaw.config.baud", "Baud rate number")
-        .forms(&[config(5, 3)])
-        .int(Unit::None, Limits::Between(0.0, 7.0))
-        .assumed_default(DefaultValue::Int(0))
-        .help(
-            "From 0 for 2400 baud: 2400, 9600, 19200, 38400, 57600, 115200, 230400, 460800. In RC mode bit \
-             0 is mixing and bit 1 exponential. Command 98, bits 5 to 7.",
-        ),
-    roboclaw("roboclaw.config.address", "Address number")
-        .forms(&[config(8, 3)])
-        .int(Unit::None, Limits::Between(0.0, 7.0))
-        .assumed_default(DefaultValue::Int(0))
-        .help(
-            "From 0 for address 0x80 to 7 for 0x87; it counts at once. In RC mode bit 0 is the flip switch \
-             and bit 1 the time-out. Command 98, bits 8 to 10.",
-        ),
-    roboclaw("roboclaw.config.bit_11", "Configuration bit 11")
-        .forms(&[config(11, 1)])
-        .assumed_default(DefaultValue::Bool(false))
-        .help(UNNAMED_BIT),
-    roboclaw("roboclaw.config.slave_select", "Slave select")
-        .forms(&[config(12, 1)])
-        .assumed_default(DefaultValue::Bool(false))
-        .help("Lets a pin choose which of several boards listens. Command 98, bit 12."),
+pub(crate) static ROWS: &[Template] = settings! {
+    roboclaw("roboclaw.pin.{n}", "Function").per(Repeat::RoboClawPins).int(Unit::None, U8_STEPS)
+        .assumed_default(DefaultValue::Int(0));
+        [Form::field(&[number::READ_PIN_FUNCTIONS], &[number::SET_PIN_FUNCTIONS], &["s3", "s4", "s5", "d1", "d2"])]
+        "The number of the pin's function: E-Stop, voltage clamp, home switch and others. Command 74.";
+    roboclaw("roboclaw.deadband.reverse", "Reverse deadband").int(Unit::None, U8_STEPS)
+        .assumed_default(DefaultValue::Int(0));
+        [control(&["deadband_min"]).only(GEN1, GEN2)]
+        "How far below center the RC and analog inputs still count as 0. Command 76.";
+    roboclaw("roboclaw.deadband.forward", "Forward deadband").int(Unit::None, U8_STEPS)
+        .assumed_default(DefaultValue::Int(0));
+        [control(&["deadband_max"]).only(GEN1, GEN2)]
+        "How far above center the RC and analog inputs still count as 0. Command 76.";
+    input("roboclaw.{n}.reverse_deadband", "Reverse deadband").int(Unit::None, U8_STEPS);
+        [control(&["s1_min", "s2_min"]).only(GEN3, GEN3),
+         control(&["s1_reverse_deadband", "s2_reverse_deadband"]).only(GEN4, GEN4)]
+        "How far below center the input still counts as 0. Command 76.";
+    input("roboclaw.{n}.forward_deadband", "Forward deadband").int(Unit::None, U8_STEPS);
+        [control(&["s1_max", "s2_max"]).only(GEN3, GEN3),
+         control(&["s1_forward_deadband", "s2_forward_deadband"]).only(GEN4, GEN4)]
+        "How far above center the input still counts as 0. Command 76.";
+    input("roboclaw.{n}.reverse_limit", "Reverse limit").int(Unit::None, U16_STEPS);
+        [control(&["s1_reverse_limit", "s2_reverse_limit"]).only(GEN4, GEN4)]
+        "The most that the input commands backward. Command 76.";
+    input("roboclaw.{n}.forward_limit", "Forward limit").int(Unit::None, U16_STEPS);
+        [control(&["s1_forward_limit", "s2_forward_limit"]).only(GEN4, GEN4)]
+        "The most that the input commands forward. Command 76.";
+    input("roboclaw.{n}.center", "Center").int(Unit::None, U16_STEPS);
+        [control(&["s1_center", "s2_center"]).only(GEN4, GEN4)]
+        "The value of the input at rest. Command 76.";
+    input("roboclaw.{n}.min", "Minimum").int(Unit::None, U16_STEPS);
+        [control(&["s1_min", "s2_min"]).only(GEN4, GEN4)]
+        "The lowest value of the input. Command 76.";
+    input("roboclaw.{n}.max", "Maximum").int(Unit::None, U16_STEPS);
+        [control(&["s1_max", "s2_max"]).only(GEN4, GEN4)]
+        "The highest value of the input. Command 76.";
+    input("roboclaw.{n}.output_min", "Output minimum").fixed(Unit::Percent, OUTPUT, 1, U16_STEPS)
+        .assumed_default(DefaultValue::Number(0.0));
+        [output(&["s1_min", "s2_min"])]
+        "The share of full output that the low end of the input commands. Command 117.";
+    input("roboclaw.{n}.output_max", "Output maximum").fixed(Unit::Percent, OUTPUT, 1, U16_STEPS)
+        .assumed_default(DefaultValue::Number(0.0));
+        [output(&["s1_max", "s2_max"])]
+        "The share of full output that the high end of the input commands. Command 117.";
+    // Commands 100 and 101 carry the CTRL modes in these generations; their names are those of generation
+    // 4.
+    roboclaw("roboclaw.ctrl{n}.mode", "Mode").per(Repeat::Ctrls).int(Unit::None, Limits::Between(0.0, 3.0))
+        .assumed_default(DefaultValue::Int(0));
+        [Form::field(&[number::READ_TEMPERATURES], &[number::READ_VOLTS], &["mode_1", "mode_2"])
+            .only(GEN2, GEN3)]
+        "The number of what the CTRL output does. Command 100.";
+    roboclaw("roboclaw.config.word", "Configuration word").int(Unit::Bits, U16_STEPS)
+        .assumed_default(DefaultValue::Int(0));
+        [Form::read_only(at(&[number::READ_CONFIG], &["config"]), "The word as a whole is shown for \
+         comparison; change its parts below.")]
+        "All of the configuration in one number. Command 99.";
+    roboclaw("roboclaw.config.mode", "Control mode").choice(CONTROL_MODES)
+        .assumed_default(DefaultValue::Key("rc"));
+        [config(0, 2)]
+        "What commands the motors. Anything but packet serial ends this connection. Command 98, bits 0 \
+         and 1.";
+    roboclaw("roboclaw.config.battery", "Battery mode").int(Unit::None, Limits::Between(0.0, 7.0))
+        .assumed_default(DefaultValue::Int(0));
+        [config(2, 3)]
+        "Off, detected at power up, or a number of lithium cells. Command 98, bits 2 to 4.";
+    roboclaw("roboclaw.config.baud", "Baud rate number").int(Unit::None, Limits::Between(0.0, 7.0))
+        .assumed_default(DefaultValue::Int(0));
+        [config(5, 3)]
+        "From 0 for 2400 baud: 2400, 9600, 19200, 38400, 57600, 115200, 230400, 460800. In RC mode bit 0 \
+         is mixing and bit 1 exponential. Command 98, bits 5 to 7.";
+    roboclaw("roboclaw.config.address", "Address number").int(Unit::None, Limits::Between(0.0, 7.0))
+        .assumed_default(DefaultValue::Int(0));
+        [config(8, 3)]
+        "From 0 for address 0x80 to 7 for 0x87; it counts at once. In RC mode bit 0 is the flip switch \
+         and bit 1 the time-out. Command 98, bits 8 to 10.";
+    roboclaw("roboclaw.config.bit_11", "Configuration bit 11").assumed_default(DefaultValue::Bool(false));
+        [config(11, 1)]
+        UNNAMED_BIT;
+    roboclaw("roboclaw.config.slave_select", "Slave select").assumed_default(DefaultValue::Bool(false));
+        [config(12, 1)]
+        "Lets a pin choose which of several boards listens. Command 98, bit 12.";
     roboclaw("roboclaw.config.swap_encoders", "Relay or swapped encoders")
-        .forms(&[config(13, 1)])
-        .assumed_default(DefaultValue::Bool(false))
-        .help("Relay mode on old boards, exchanged encoder inputs on later ones. Command 98, bit 13."),
-    roboclaw("roboclaw.config.bit_14", "Configuration bit 14")
-        .forms(&[config(14, 1)])
-        .assumed_default(DefaultValue::Bool(false))
-        .help(UNNAMED_BIT),
-    roboclaw("roboclaw.config.open_drain", "Multi-unit mode")
-        .forms(&[config(15, 1)])
-        .assumed_default(DefaultValue::Bool(false))
-        .help("Open-drain output, so that several boards share one receive line. Command 98, bit 15."),
-];
+        .assumed_default(DefaultValue::Bool(false));
+        [config(13, 1)]
+        "Relay mode on old boards, exchanged encoder inputs on later ones. Command 98, bit 13.";
+    roboclaw("roboclaw.config.bit_14", "Configuration bit 14").assumed_default(DefaultValue::Bool(false));
+        [config(14, 1)]
+        UNNAMED_BIT;
+    roboclaw("roboclaw.config.open_drain", "Multi-unit mode").assumed_default(DefaultValue::Bool(false));
+        [config(15, 1)]
+        "Open-drain output, so that several boards share one receive line. Command 98, bit 15.";
+};
 
 /// A row of its own all the same, so that a backup brings back the whole word.
 const UNNAMED_BIT: &str = "What this bit does is not published. Leave it as it is. Command 98.";
