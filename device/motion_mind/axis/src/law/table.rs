@@ -5,67 +5,6 @@ use super::registers::{MotionMindHeld, MotionMindProposal, MotionMindRegisters, 
 use brushwork_motion_mind_wire::FUNCTION_BITS;
 use brushwork_tuning::registers::{FeedForward, RegisterField, RegisterTable};
 
-static FIELDS: [RegisterField; 12] = [
-    RegisterField::number(
-        "register.pterm",
-        "PTERM",
-        (0.0, 65_535.0),
-        "On the position error; on its sum under a speed command",
-    ),
-    RegisterField::number(
-        "register.iterm",
-        "ITERM",
-        (0.0, 65_535.0),
-        "On the sum of the position errors; none under a speed command",
-    ),
-    RegisterField::number(
-        "register.dterm",
-        "DTERM",
-        (0.0, 65_535.0),
-        "On the change of the error: the error of the speed under a speed command",
-    ),
-    RegisterField::number(
-        "register.pidscalar",
-        "PIDSCALAR",
-        (0.0, 32.0),
-        "The sum of the terms is divided by two to this power",
-    ),
-    RegisterField::number(
-        "register.velocityff",
-        "VELOCITYFF",
-        (0.0, 255.0),
-        "Duty for a speed by itself: counts per loop x this / 255",
-    ),
-    RegisterField::number(
-        "register.deadband",
-        "DEADBAND",
-        (0.0, 1_023.0),
-        "Errors up to this many counts are none, where ENABLEDB is set",
-    ),
-    RegisterField::switch(
-        "function.satprot",
-        "SATPROT",
-        "Bounds the sum of the errors closely and stops it at full duty",
-    ),
-    RegisterField::switch("function.enabledb", "ENABLEDB", "No duty inside DEADBAND"),
-    RegisterField::switch(
-        "function.activestop",
-        "ACTIVESTOP",
-        "A duty of 0 shorts the motor instead of letting it coast",
-    ),
-    RegisterField::switch("function.disablepid", "DISABLEPID", "The loop gives no duty"),
-    RegisterField::switch(
-        "function2.newvelmode",
-        "NEWVELMODE",
-        "Speed moves work on speeds, and their output is added up",
-    ),
-    RegisterField::switch(
-        "function2.fastpid",
-        "FASTPID",
-        "A loop of 0.5 ms, which serial commands do not have",
-    ),
-];
-
 /// Where a key's value stands.
 enum Place<'r> {
     Byte(&'r mut u8),
@@ -73,22 +12,43 @@ enum Place<'r> {
     Bit(&'r mut u16, u16),
 }
 
-fn place<'r>(of: &'r mut MotionMindRegisters, key: &str) -> Option<Place<'r>> {
-    Some(match key {
-        "register.pterm" => Place::Word(&mut of.pterm),
-        "register.iterm" => Place::Word(&mut of.iterm),
-        "register.dterm" => Place::Word(&mut of.dterm),
-        "register.pidscalar" => Place::Byte(&mut of.pidscalar),
-        "register.velocityff" => Place::Byte(&mut of.velocity_ff),
-        "register.deadband" => Place::Word(&mut of.deadband),
-        "function.satprot" => Place::Bit(&mut of.function, bits::SATPROT),
-        "function.enabledb" => Place::Bit(&mut of.function, bits::ENABLEDB),
-        "function.activestop" => Place::Bit(&mut of.function, bits::ACTIVESTOP),
-        "function.disablepid" => Place::Bit(&mut of.function, bits::DISABLEPID),
-        "function2.newvelmode" => Place::Bit(&mut of.function2, bits::NEWVELMODE),
-        "function2.fastpid" => Place::Bit(&mut of.function2, bits::FASTPID),
-        _ => return None,
-    })
+macro_rules! registers {
+    ($($place:ident($part:ident $(, $bit:ident)?) $form:ident $key:literal $label:literal $(in $range:expr,)? $hint:literal;)*) => {
+        static FIELDS: [RegisterField; 12] = [$(RegisterField::$form($key, $label, $($range,)? $hint)),*];
+
+        /// Where the register of a key is held.
+        fn place<'r>(of: &'r mut MotionMindRegisters, key: &str) -> Option<Place<'r>> {
+            match key {
+                $($key => Some(Place::$place(&mut of.$part $(, bits::$bit)?)),)*
+                _ => None,
+            }
+        }
+    };
+}
+
+registers! {
+    Word(pterm) number "register.pterm" "PTERM" in (0.0, 65_535.0),
+        "On the position error; on its sum under a speed command";
+    Word(iterm) number "register.iterm" "ITERM" in (0.0, 65_535.0),
+        "On the sum of the position errors; none under a speed command";
+    Word(dterm) number "register.dterm" "DTERM" in (0.0, 65_535.0),
+        "On the change of the error: the error of the speed under a speed command";
+    Byte(pidscalar) number "register.pidscalar" "PIDSCALAR" in (0.0, 32.0),
+        "The sum of the terms is divided by two to this power";
+    Byte(velocity_ff) number "register.velocityff" "VELOCITYFF" in (0.0, 255.0),
+        "Duty for a speed by itself: counts per loop x this / 255";
+    Word(deadband) number "register.deadband" "DEADBAND" in (0.0, 1_023.0),
+        "Errors up to this many counts are none, where ENABLEDB is set";
+    Bit(function, SATPROT) switch "function.satprot" "SATPROT"
+        "Bounds the sum of the errors closely and stops it at full duty";
+    Bit(function, ENABLEDB) switch "function.enabledb" "ENABLEDB" "No duty inside DEADBAND";
+    Bit(function, ACTIVESTOP) switch "function.activestop" "ACTIVESTOP"
+        "A duty of 0 shorts the motor instead of letting it coast";
+    Bit(function, DISABLEPID) switch "function.disablepid" "DISABLEPID" "The loop gives no duty";
+    Bit(function2, NEWVELMODE) switch "function2.newvelmode" "NEWVELMODE"
+        "Speed moves work on speeds, and their output is added up";
+    Bit(function2, FASTPID) switch "function2.fastpid" "FASTPID"
+        "A loop of 0.5 ms, which serial commands do not have";
 }
 
 impl RegisterTable for MotionMindProposal {

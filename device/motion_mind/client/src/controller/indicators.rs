@@ -4,54 +4,32 @@ use brushwork_link::device::{Indicator, PlaceState, StatusPlace, StatusReport};
 use brushwork_motion_mind_wire::status;
 use brushwork_values::Severity;
 
-/// Every bit of STATUS (Motion Mind manual, figure 22). What takes the drive away is an error, what limits it a warning, the rest is
-/// nothing but news.
-pub static INDICATORS: &[Indicator] = &[
-    bit(status::BRAKE, "brake", "BRAKE", "Brake input at ground: the bridge is off", Severity::Error),
-    bit(
-        status::TEMPFAULT,
-        "temp_fault",
-        "TEMPFAULT",
-        "Too hot: the bridge is off until it has cooled to 80 °C",
-        Severity::Error,
-    ),
-    bit(
-        status::CURRENTLIMIT,
-        "current_limit",
-        "CURRENTLIMIT",
-        "Current above AMPSLIMIT: the drive is reduced",
-        Severity::Warning,
-    ),
-    bit(status::BADRC, "bad_rc", "BADRC", "R/C pulse missing, too short or too long", Severity::Warning),
-    bit(status::NEGLIMIT, "negative_limit", "NEGLIMIT", "Negative limit input at ground", Severity::Warning),
-    bit(status::POSLIMIT, "positive_limit", "POSLIMIT", "Positive limit input at ground", Severity::Warning),
-    bit(
-        status::VNLIMIT,
-        "virtual_negative_limit",
-        "VNLIMIT",
-        "At the negative virtual limit",
-        Severity::Warning,
-    ),
-    bit(
-        status::VPLIMIT,
-        "virtual_positive_limit",
-        "VPLIMIT",
-        "At the positive virtual limit",
-        Severity::Warning,
-    ),
-    bit(status::PWMLIMIT, "pwm_limit", "PWMLIMIT", "Drive at PWMLIMIT", Severity::Signal),
-    bit(status::INDEX, "index", "INDEX", "Index input at ground", Severity::Signal),
-    bit(status::INPOSITION, "in_position", "INPOSITION", "The motor is where it was sent", Severity::Signal),
-];
+macro_rules! indicators {
+    ($($bit:ident $key:literal $title:literal $severity:ident;)*) => {
+        /// Every bit of STATUS (Motion Mind manual, figure 22). What takes the drive away is an error, what limits it a warning, the rest is
+        /// nothing but news.
+        pub static INDICATORS: &[Indicator] = &[$(Indicator {
+            mask: status::$bit as u32,
+            key: $key,
+            short: stringify!($bit),
+            title: $title,
+            severity: Severity::$severity,
+        }),*];
+    };
+}
 
-const fn bit(
-    mask: u16,
-    key: &'static str,
-    short: &'static str,
-    title: &'static str,
-    severity: Severity,
-) -> Indicator {
-    Indicator { mask: mask as u32, key, short, title, severity }
+indicators! {
+    BRAKE "brake" "Brake input at ground: the bridge is off" Error;
+    TEMPFAULT "temp_fault" "Too hot: the bridge is off until it has cooled to 80 °C" Error;
+    CURRENTLIMIT "current_limit" "Current above AMPSLIMIT: the drive is reduced" Warning;
+    BADRC "bad_rc" "R/C pulse missing, too short or too long" Warning;
+    NEGLIMIT "negative_limit" "Negative limit input at ground" Warning;
+    POSLIMIT "positive_limit" "Positive limit input at ground" Warning;
+    VNLIMIT "virtual_negative_limit" "At the negative virtual limit" Warning;
+    VPLIMIT "virtual_positive_limit" "At the positive virtual limit" Warning;
+    PWMLIMIT "pwm_limit" "Drive at PWMLIMIT" Signal;
+    INDEX "index" "Index input at ground" Signal;
+    INPOSITION "in_position" "The motor is where it was sent" Signal;
 }
 
 /// The status row, in the order of the word.

@@ -36,152 +36,59 @@ const COUNTS: Form = Form::Raw(Unit::Counts);
 const PLAIN: Form = Form::Raw(Unit::None);
 const MILLISECONDS: Form = Form::Scaled(Unit::Milliseconds, 3);
 
-const fn shown(
-    register: u8,
-    key: &'static str,
-    label: &'static str,
-    group: Group,
-    form: Form,
-    help: &'static str,
-) -> Shown {
-    Shown { register, key, label, group, form, help }
+macro_rules! shown {
+    ($($number:ident $key:literal $label:literal $group:ident, $form:expr; $help:literal;)*) => {
+        static SHOWN: &[Shown] = &[$(Shown {
+            register: number::$number, key: $key, label: $label, group: Group::$group, form: $form, help: $help,
+        }),*];
+    };
 }
 
-static SHOWN: &[Shown] = &[
-    shown(
-        number::ADDRESS,
-        "register.address",
-        "Address",
-        Group::Unit,
-        PLAIN,
-        "What the unit answers to, 1 to 98, when several share a bus. From 99 on it hears all and never answers. Motion Mind manual 6.2, \
-         register 7.",
-    ),
-    shown(
-        number::AMPSLIMIT,
-        "register.ampslimit",
-        "Current limit",
-        Group::CurrentLimits,
-        Form::Scaled(Unit::Amps, 2),
-        "Above this current the drive is reduced by the excess; 0 switches the limit off. Motion Mind manual 3.10, register 28.",
-    ),
-    shown(
-        number::PWMLIMIT,
-        "register.pwmlimit",
-        "Drive limit",
-        Group::CurrentLimits,
-        Form::Scaled(Unit::Percent, 1),
-        "The most drive that the motor gets in either direction. Motion Mind manual 3.10, register 25.",
-    ),
-    shown(
-        number::VELOCITYLIMIT,
-        "register.velocitylimit",
-        "Velocity limit",
-        Group::Velocity,
-        PLAIN,
-        "Modes 0 to 3: the most by which the drive (of 1023) changes in one TIMER. Mode 4 with VELLIMIT: the speed of moves in counts per \
-         PID loop of 5 ms. Motion Mind manual 6.2, register 1.",
-    ),
-    shown(
-        number::TIMER,
-        "register.timer",
-        "Timer",
-        Group::Velocity,
-        Form::Scaled(Unit::Seconds, 3),
-        "Time between two changes of the drive in the open-loop modes, and how long a button or limit input must be steady. Motion Mind \
-         manual 6.2, register 9.",
-    ),
-    shown(
-        number::VELOCITYFF,
-        "register.velocityff",
-        "Velocity feed-forward",
-        Group::Velocity,
-        PLAIN,
-        "This over 255, times the commanded velocity in counts per loop, is added to the drive (of 1023). Motion Mind manual 3.15, \
-         register 2.",
-    ),
-    shown(
-        number::PTERM,
-        "register.pterm",
-        "P",
-        Group::Loop,
-        PLAIN,
-        "Proportional gain of the PID. Motion Mind manual 3.13, register 4.",
-    ),
-    shown(
-        number::ITERM,
-        "register.iterm",
-        "I",
-        Group::Loop,
-        PLAIN,
-        "Integral gain of the PID, for the sum of errors of all loops. Motion Mind manual 3.13, register 5.",
-    ),
-    shown(
-        number::DTERM,
-        "register.dterm",
-        "D",
-        Group::Loop,
-        PLAIN,
-        "Derivative gain of the PID, for the change of the error in one loop. Motion Mind manual 3.13, register 6.",
-    ),
-    shown(
-        number::PIDSCALAR,
-        "register.pidscalar",
-        "PID scalar",
-        Group::Loop,
-        PLAIN,
-        "The sum of the three terms is divided by 2 to this power: one more halves all gains. Motion Mind manual 3.13, register 8.",
-    ),
-    shown(
-        number::DEADBAND,
-        "register.deadband",
-        "Dead band",
-        Group::Loop,
-        PLAIN,
-        "With ENABLEDB: no drive within so many counts of the setpoint. Mode 1: steps of 4.88 mV around 2.5 V that stop the motor. Motion \
-         Mind manual 6.2, register 26.",
-    ),
-    shown(
-        number::VNLIMIT,
-        "register.vnlimit",
-        "Negative virtual limit",
-        Group::Position,
-        COUNTS,
-        "With VIRTLIMIT: at this position the motor stops on its way down. Motion Mind manual 6.2, register 23.",
-    ),
-    shown(
-        number::VPLIMIT,
-        "register.vplimit",
-        "Positive virtual limit",
-        Group::Position,
-        COUNTS,
-        "With VIRTLIMIT: at this position the motor stops on its way up. Motion Mind manual 6.2, register 24.",
-    ),
-    shown(
-        number::RCMAX,
-        "register.rcmax",
-        "R/C maximum",
-        Group::Pins,
-        MILLISECONDS,
-        "Width of the pulse that is full speed forward. Motion Mind manual 4.3, register 10.",
-    ),
-    shown(
-        number::RCMIN,
-        "register.rcmin",
-        "R/C minimum",
-        Group::Pins,
-        MILLISECONDS,
-        "Width of the pulse that is full speed reverse. Motion Mind manual 4.3, register 11.",
-    ),
-    shown(
-        number::RCBAND,
-        "register.rcband",
-        "R/C dead band",
-        Group::Pins,
-        MILLISECONDS,
-        "Pulses this near to 1.5 ms stop the motor. Motion Mind manual 4.3, register 12.",
-    ),
-];
+shown! {
+    ADDRESS "register.address" "Address" Unit, PLAIN;
+        "What the unit answers to, 1 to 98, when several share a bus. From 99 on it hears all and never \
+         answers. Motion Mind manual 6.2, register 7.";
+    AMPSLIMIT "register.ampslimit" "Current limit" CurrentLimits, Form::Scaled(Unit::Amps, 2);
+        "Above this current the drive is reduced by the excess; 0 switches the limit off. Motion Mind \
+         manual 3.10, register 28.";
+    PWMLIMIT "register.pwmlimit" "Drive limit" CurrentLimits, Form::Scaled(Unit::Percent, 1);
+        "The most drive that the motor gets in either direction. Motion Mind manual 3.10, register 25.";
+    VELOCITYLIMIT "register.velocitylimit" "Velocity limit" Velocity, PLAIN;
+        "Modes 0 to 3: the most by which the drive (of 1023) changes in one TIMER. Mode 4 with VELLIMIT: \
+         the speed of moves in counts per PID loop of 5 ms. Motion Mind manual 6.2, register 1.";
+    TIMER "register.timer" "Timer" Velocity, Form::Scaled(Unit::Seconds, 3);
+        "Time between two changes of the drive in the open-loop modes, and how long a button or limit input \
+         must be steady. Motion Mind manual 6.2, register 9.";
+    VELOCITYFF "register.velocityff" "Velocity feed-forward" Velocity, PLAIN;
+        "This over 255, times the commanded velocity in counts per loop, is added to the drive (of 1023). \
+         Motion Mind manual 3.15, register 2.";
+    PTERM "register.pterm" "P" Loop, PLAIN;
+        "Proportional gain of the PID. Motion Mind manual 3.13, register 4.";
+    ITERM "register.iterm" "I" Loop, PLAIN;
+        "Integral gain of the PID, for the sum of errors of all loops. Motion Mind manual 3.13, register \
+         5.";
+    DTERM "register.dterm" "D" Loop, PLAIN;
+        "Derivative gain of the PID, for the change of the error in one loop. Motion Mind manual 3.13, \
+         register 6.";
+    PIDSCALAR "register.pidscalar" "PID scalar" Loop, PLAIN;
+        "The sum of the three terms is divided by 2 to this power: one more halves all gains. Motion Mind \
+         manual 3.13, register 8.";
+    DEADBAND "register.deadband" "Dead band" Loop, PLAIN;
+        "With ENABLEDB: no drive within so many counts of the setpoint. Mode 1: steps of 4.88 mV around 2.5 \
+         V that stop the motor. Motion Mind manual 6.2, register 26.";
+    VNLIMIT "register.vnlimit" "Negative virtual limit" Position, COUNTS;
+        "With VIRTLIMIT: at this position the motor stops on its way down. Motion Mind manual 6.2, register \
+         23.";
+    VPLIMIT "register.vplimit" "Positive virtual limit" Position, COUNTS;
+        "With VIRTLIMIT: at this position the motor stops on its way up. Motion Mind manual 6.2, register \
+         24.";
+    RCMAX "register.rcmax" "R/C maximum" Pins, MILLISECONDS;
+        "Width of the pulse that is full speed forward. Motion Mind manual 4.3, register 10.";
+    RCMIN "register.rcmin" "R/C minimum" Pins, MILLISECONDS;
+        "Width of the pulse that is full speed reverse. Motion Mind manual 4.3, register 11.";
+    RCBAND "register.rcband" "R/C dead band" Pins, MILLISECONDS;
+        "Pulses this near to 1.5 ms stop the motor. Motion Mind manual 4.3, register 12.";
+}
 
 /// Every row, in screen order.
 pub fn rows() -> Vec<Row> {
