@@ -19,7 +19,7 @@ pub struct Quirk {
     #[serde(skip)]
     generations: (Generation, Generation),
     #[serde(skip)]
-    versions: Option<fn(&[u32]) -> bool>,
+    since: &'static [u32],
 }
 
 impl Quirk {
@@ -30,7 +30,7 @@ impl Quirk {
         let (first, last) = self.generations;
         family.is_none_or(|family| self.families.contains(&family))
             && (first..=last).contains(&generation)
-            && self.versions.is_none_or(|test| parts(version).is_some_and(|parts| test(&parts)))
+            && (self.since.is_empty() || parts(version).is_some_and(|parts| *parts >= *self.since))
     }
 }
 
@@ -62,100 +62,49 @@ const BOTH: &[Family] = &[Family::Mcp, Family::RoboClaw];
 const ROBOCLAW: &[Family] = &[Family::RoboClaw];
 const MCP: &[Family] = &[Family::Mcp];
 
-const fn quirk(
-    topic: &'static str,
-    generations: (Generation, Generation),
-    text: &'static str,
-    source: &'static str,
-) -> Quirk {
-    Quirk { topic, text, source, families: BOTH, generations, versions: None }
+/// The rows of the table of habits: of which families, about what, in which generations, from which source, and the
+/// version it came with unless every version has it.
+macro_rules! quirks {
+    ($($families:ident $topic:literal ($first:ident $last:ident) $source:expr $(, since [$($since:literal)*])?; $text:literal;)*) => {
+        &[$(Quirk {
+            topic: $topic,
+            text: $text,
+            source: $source,
+            families: $families,
+            generations: ($first, $last),
+            since: &[$($($since),*)?],
+        }),*]
+    };
 }
 
 /// All of them, in the order in which they are told.
-pub const QUIRKS: &[Quirk] = &[
-    quirk(
-        "status",
-        (Gen1, Gen2),
-        "The status word has 16 bits and cannot report speed, position or current errors.",
-        MANUAL,
-    ),
-    quirk(
-        "status",
-        (Gen3, Gen4),
-        "The status word has 32 bits, whose meanings are not those of the manual.",
-        CLIENTS,
-    ),
-    quirk(
-        "saving",
-        (Gen1, Gen1),
+pub const QUIRKS: &[Quirk] = quirks! {
+    BOTH "status" (Gen1 Gen2) MANUAL;
+        "The status word has 16 bits and cannot report speed, position or current errors.";
+    BOTH "status" (Gen3 Gen4) CLIENTS;
+        "The status word has 32 bits, whose meanings are not those of the manual.";
+    BOTH "saving" (Gen1 Gen1) "MCP manual against public clients, 2015-2025";
         "The manual saves settings without a key, the library of that time with one; a save that does nothing is found out by \
-         reading back.",
-        "MCP manual against public clients, 2015-2025",
-    ),
-    quirk(
-        "saving",
-        (Gen2, Gen4),
-        "Settings are saved only with a key; software that leaves it out saves nothing and is told nothing.",
-        CLIENTS,
-    ),
-    quirk("acceleration", (Gen1, Gen1), "The default acceleration also serves for braking.", MANUAL),
-    quirk("acceleration", (Gen2, Gen4), "Default acceleration and deceleration are set apart.", CLIENTS),
-    quirk("pins", (Gen1, Gen1), "Pin settings have no low-pass filter, and each action one byte.", MANUAL),
-    quirk(
-        "loop errors",
-        (Gen3, Gen4),
-        "Speed and position errors have limits of their own (commands 109 to 114).",
-        CLIENTS,
-    ),
-    quirk("PWM mode", (Gen3, Gen4), "Each motor has a PWM mode of its own.", CLIENTS),
-    quirk(
-        "restart",
-        (Gen4, Gen4),
-        "It tells its running time, so that a restart is noticed at once.",
-        CLIENTS,
-    ),
-    quirk(
-        "voltage limits",
-        (Gen4, Gen4),
-        "Battery limits carry an automatic offset, counted in 0.1 V.",
-        CLIENTS,
-    ),
-    Quirk {
-        families: ROBOCLAW,
-        versions: Some(|version| version >= &[4, 3, 6]),
-        ..quirk(
-            "compatibility",
-            (Gen1, Gen4),
-            "From version 4.3.6 on commands 0 to 13 drive the motors and are not acknowledged.",
-            CLIENTS,
-        )
-    },
-    Quirk {
-        families: ROBOCLAW,
-        versions: Some(|version| version >= &[4, 1, 27]),
-        ..quirk(
-            "velocity loop",
-            (Gen1, Gen4),
-            "From version 4.1.27 on the integral is held back by back-calculation instead of leaking away.",
-            CLIENTS,
-        )
-    },
-    Quirk {
-        families: MCP,
-        ..quirk(
-            "position gains",
-            (Gen1, Gen4),
-            "Whether position gains are counted in 1/1024 or 1/2048 is not settled; this program uses 1/1024.",
-            "MCP manual 3.3 against public clients, 2015-2025",
-        )
-    },
-    quirk(
-        "images",
-        (Gen1, Gen4),
-        "No firmware image is published, nor what a controller checks of one before it runs it.",
-        CLIENTS,
-    ),
-];
+         reading back.";
+    BOTH "saving" (Gen2 Gen4) CLIENTS;
+        "Settings are saved only with a key; software that leaves it out saves nothing and is told nothing.";
+    BOTH "acceleration" (Gen1 Gen1) MANUAL; "The default acceleration also serves for braking.";
+    BOTH "acceleration" (Gen2 Gen4) CLIENTS; "Default acceleration and deceleration are set apart.";
+    BOTH "pins" (Gen1 Gen1) MANUAL; "Pin settings have no low-pass filter, and each action one byte.";
+    BOTH "loop errors" (Gen3 Gen4) CLIENTS;
+        "Speed and position errors have limits of their own (commands 109 to 114).";
+    BOTH "PWM mode" (Gen3 Gen4) CLIENTS; "Each motor has a PWM mode of its own.";
+    BOTH "restart" (Gen4 Gen4) CLIENTS; "It tells its running time, so that a restart is noticed at once.";
+    BOTH "voltage limits" (Gen4 Gen4) CLIENTS; "Battery limits carry an automatic offset, counted in 0.1 V.";
+    ROBOCLAW "compatibility" (Gen1 Gen4) CLIENTS, since [4 3 6];
+        "From version 4.3.6 on commands 0 to 13 drive the motors and are not acknowledged.";
+    ROBOCLAW "velocity loop" (Gen1 Gen4) CLIENTS, since [4 1 27];
+        "From version 4.1.27 on the integral is held back by back-calculation instead of leaking away.";
+    MCP "position gains" (Gen1 Gen4) "MCP manual 3.3 against public clients, 2015-2025";
+        "Whether position gains are counted in 1/1024 or 1/2048 is not settled; this program uses 1/1024.";
+    BOTH "images" (Gen1 Gen4) CLIENTS;
+        "No firmware image is published, nor what a controller checks of one before it runs it.";
+};
 
 /// "4.3.6" as its numbers; none if it is something else.
 fn parts(version: &str) -> Option<Vec<u32>> {

@@ -12,84 +12,6 @@ use serde::{Deserialize, Serialize};
 
 use super::identity::Generation;
 
-/// What a status word can say about a unit.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Condition {
-    /// The emergency stop is pressed or not yet reset.
-    EStop,
-    /// The board is too hot; the motors are stopped.
-    Temperature1Error,
-    /// The second sensor is too hot; the motors are stopped.
-    Temperature2Error,
-    /// The main battery is over its limit.
-    MainBatteryHighError,
-    /// The main battery is under its limit (generation 4).
-    MainBatteryLowError,
-    /// The main battery was over its limit and is not yet far enough below (generation 4).
-    MainBatteryHighHysteresis,
-    /// The logic battery is over its limit.
-    LogicBatteryHighError,
-    /// The logic battery is under its limit.
-    LogicBatteryLowError,
-    /// The bridge of motor 1 reports a fault.
-    M1DriverFault,
-    /// The bridge of motor 2 reports a fault.
-    M2DriverFault,
-    /// Motor 1 was stopped by its speed error limit.
-    M1SpeedError,
-    /// Motor 2 was stopped by its speed error limit.
-    M2SpeedError,
-    /// Motor 1 was stopped by its position error limit.
-    M1PositionError,
-    /// Motor 2 was stopped by its position error limit.
-    M2PositionError,
-    /// Motor 1 was stopped by its current.
-    M1CurrentError,
-    /// Motor 2 was stopped by its current.
-    M2CurrentError,
-    /// Motor 1 is at its current limit.
-    M1OverCurrentWarning,
-    /// Motor 2 is at its current limit.
-    M2OverCurrentWarning,
-    /// The main battery is near its upper limit.
-    MainBatteryHighWarning,
-    /// The main battery is near its lower limit.
-    MainBatteryLowWarning,
-    /// The board is hot; output is reduced.
-    Temperature1Warning,
-    /// The second sensor is hot; output is reduced.
-    Temperature2Warning,
-    /// A speed error is near its limit (generation 3).
-    SpeedLimitWarning,
-    /// A position error is near its limit (generation 3).
-    PositionLimitWarning,
-    /// Motor 1's speed error is near its limit (generation 4).
-    M1SpeedWarning,
-    /// Motor 2's speed error is near its limit (generation 4).
-    M2SpeedWarning,
-    /// Motor 1's position error is near its limit (generation 4).
-    M1PositionWarning,
-    /// Motor 2's position error is near its limit (generation 4).
-    M2PositionWarning,
-    /// Something is wrong on the CAN bus (generation 4).
-    CanWarning,
-    /// Something was wrong at start-up (generation 4).
-    BootWarning,
-    /// Motor 1 gives back more current than its limit (generation 4).
-    M1OverRegenerationWarning,
-    /// Motor 2 gives back more current than its limit (generation 4).
-    M2OverRegenerationWarning,
-    /// Motor 1's home input is active (generations 1 and 2, RoboClaw).
-    M1Home,
-    /// Motor 2's home input is active (generations 1 and 2, RoboClaw).
-    M2Home,
-    /// Pin S4 is active: home, limit or stop (generations 3 and 4).
-    S4Signal,
-    /// Pin S5 is active: home, limit or stop (generations 3 and 4).
-    S5Signal,
-}
-
 brushwork_values::listed! {
     /// The thirteen indicators of the vendor's program (MCP manual 1.2.2), in its order.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
@@ -271,12 +193,6 @@ impl Conditions {
         }
     }
 
-    /// Those in either.
-    #[must_use]
-    pub const fn union(self, other: Self) -> Self {
-        Self(self.0 | other.0)
-    }
-
     /// Those that a status word of `generation` can say.
     #[must_use]
     pub fn known_to(self, generation: Generation) -> Self {
@@ -331,60 +247,105 @@ macro_rules! indicator {
     };
 }
 
-/// The rows of a table of conditions.
+/// The conditions and their table: what each means, its name in programs, what people call it, how grave it is, the
+/// indicator that shows it and its masks.
 macro_rules! conditions {
-    ($($condition:ident $key:literal $title:literal $severity:ident [$($indicator:ident)?] $masks:expr;)*) => {
-        [$(ConditionRow {
+    ($($(#[$meaning:meta])+ $condition:ident $key:literal $title:literal $severity:ident [$($indicator:ident)?] $masks:expr;)*) => {
+        /// What a status word can say about a unit.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+        #[serde(rename_all = "snake_case")]
+        pub enum Condition {
+            $($(#[$meaning])+ $condition),*
+        }
+
+        /// Every condition in the order of [`Condition`]. Bits of generations 1 and 2: MCP manual command 90, with those of
+        /// the RoboClaw in the gaps. Of 3 and 4: public clients and the RoboClaw manual of 2018, with those of 2025 in the
+        /// gaps.
+        pub static CONDITIONS: [ConditionRow; 36] = [$(ConditionRow {
             condition: Condition::$condition,
             key: $key,
             title: $title,
             severity: Severity::$severity,
             indicator: indicator!($($indicator)?),
             masks: $masks,
-        }),*]
+        }),*];
     };
 }
 
-/// Every condition in the order of [`Condition`]. Bits of generations 1 and 2: MCP manual command 90, with those of the
-/// RoboClaw in the gaps. Of 3 and 4: public clients and the RoboClaw manual of 2018, with those of 2025 in the gaps.
-pub static CONDITIONS: [ConditionRow; 36] = conditions! {
+conditions! {
+    /// The emergency stop is pressed or not yet reset.
     EStop "e_stop" "E-Stop" Error [EStop] [0x0004, 0x0004, 0x0001, 0x0001];
+    /// The board is too hot; the motors are stopped.
     Temperature1Error "temperature1_error" "Temperature error" Error [Temperature1] [0x0008, 0x0008, 0x0002, 0x0002];
+    /// The second sensor is too hot; the motors are stopped.
     Temperature2Error "temperature2_error" "Temperature 2 error" Error [Temperature2] [0x0010, 0x0010, 0x0004, 0x0004];
+    /// The main battery is over its limit.
     MainBatteryHighError "main_battery_high_error" "Main battery high error" Error [MainBatteryHigh] [0x0020, 0x0020, 0x0008, 0x0008];
+    /// The main battery is under its limit (generation 4).
     MainBatteryLowError "main_battery_low_error" "Main battery low error" Error [MainBatteryLow] [0, 0, 0, 0x4000];
+    /// The main battery was over its limit and is not yet far enough below (generation 4).
     MainBatteryHighHysteresis "main_battery_high_hysteresis" "Main battery high hysteresis" Error [MainBatteryHigh] [0, 0, 0, 0x8000];
+    /// The logic battery is over its limit.
     LogicBatteryHighError "logic_battery_high_error" "Logic battery high error" Error [LogicBatteryHigh] [0x0040, 0x0040, 0x0010, 0x0010];
+    /// The logic battery is under its limit.
     LogicBatteryLowError "logic_battery_low_error" "Logic battery low error" Error [LogicBatteryLow] [0x0080, 0x0080, 0x0020, 0x0020];
+    /// The bridge of motor 1 reports a fault.
     M1DriverFault "m1_driver_fault" "M1 driver fault" Error [M1DriverFault] [0x0100, 0x0100, 0x0040, 0x0040];
+    /// The bridge of motor 2 reports a fault.
     M2DriverFault "m2_driver_fault" "M2 driver fault" Error [M2DriverFault] [0x0200, 0x0200, 0x0080, 0x0080];
+    /// Motor 1 was stopped by its speed error limit.
     M1SpeedError "m1_speed_error" "M1 speed error" Error [] [0, 0, 0x0100, 0x0100];
+    /// Motor 2 was stopped by its speed error limit.
     M2SpeedError "m2_speed_error" "M2 speed error" Error [] [0, 0, 0x0200, 0x0200];
+    /// Motor 1 was stopped by its position error limit.
     M1PositionError "m1_position_error" "M1 position error" Error [] [0, 0, 0x0400, 0x0400];
+    /// Motor 2 was stopped by its position error limit.
     M2PositionError "m2_position_error" "M2 position error" Error [] [0, 0, 0x0800, 0x0800];
+    /// Motor 1 was stopped by its current.
     M1CurrentError "m1_current_error" "M1 current error" Error [M1OverCurrent] [0, 0, 0x1000, 0x1000];
+    /// Motor 2 was stopped by its current.
     M2CurrentError "m2_current_error" "M2 current error" Error [M2OverCurrent] [0, 0, 0x2000, 0x2000];
+    /// Motor 1 is at its current limit.
     M1OverCurrentWarning "m1_over_current_warning" "M1 over-current warning" Warning [M1OverCurrent] [0x0001, 0x0001, 0x0001_0000, 0x0001_0000];
+    /// Motor 2 is at its current limit.
     M2OverCurrentWarning "m2_over_current_warning" "M2 over-current warning" Warning [M2OverCurrent] [0x0002, 0x0002, 0x0002_0000, 0x0002_0000];
+    /// The main battery is near its upper limit.
     MainBatteryHighWarning "main_battery_high_warning" "Main battery high warning" Warning [MainBatteryHigh] [0x0400, 0x0400, 0x0004_0000, 0x0004_0000];
+    /// The main battery is near its lower limit.
     MainBatteryLowWarning "main_battery_low_warning" "Main battery low warning" Warning [MainBatteryLow] [0x0800, 0x0800, 0x0008_0000, 0x0008_0000];
+    /// The board is hot; output is reduced.
     Temperature1Warning "temperature1_warning" "Temperature warning" Warning [Temperature1] [0x1000, 0x1000, 0x0010_0000, 0x0010_0000];
+    /// The second sensor is hot; output is reduced.
     Temperature2Warning "temperature2_warning" "Temperature 2 warning" Warning [Temperature2] [0x2000, 0x2000, 0x0020_0000, 0x0020_0000];
+    /// A speed error is near its limit (generation 3).
     SpeedLimitWarning "speed_limit_warning" "Speed limit warning" Warning [] [0, 0, 0x0100_0000, 0];
+    /// A position error is near its limit (generation 3).
     PositionLimitWarning "position_limit_warning" "Position limit warning" Warning [] [0, 0, 0x0200_0000, 0];
+    /// Motor 1's speed error is near its limit (generation 4).
     M1SpeedWarning "m1_speed_warning" "M1 speed warning" Warning [] [0, 0, 0, 0x0100_0000];
+    /// Motor 2's speed error is near its limit (generation 4).
     M2SpeedWarning "m2_speed_warning" "M2 speed warning" Warning [] [0, 0, 0, 0x0200_0000];
+    /// Motor 1's position error is near its limit (generation 4).
     M1PositionWarning "m1_position_warning" "M1 position warning" Warning [] [0, 0, 0, 0x0400_0000];
+    /// Motor 2's position error is near its limit (generation 4).
     M2PositionWarning "m2_position_warning" "M2 position warning" Warning [] [0, 0, 0, 0x0800_0000];
+    /// Something is wrong on the CAN bus (generation 4).
     CanWarning "can_warning" "CAN warning" Warning [] [0, 0, 0, 0x1000_0000];
+    /// Something was wrong at start-up (generation 4).
     BootWarning "boot_warning" "Boot warning" Warning [] [0, 0, 0, 0x2000_0000];
+    /// Motor 1 gives back more current than its limit (generation 4).
     M1OverRegenerationWarning "m1_over_regeneration_warning" "M1 over-regeneration warning" Warning [] [0, 0, 0, 0x4000_0000];
+    /// Motor 2 gives back more current than its limit (generation 4).
     M2OverRegenerationWarning "m2_over_regeneration_warning" "M2 over-regeneration warning" Warning [] [0, 0, 0, 0x8000_0000];
+    /// Motor 1's home input is active (generations 1 and 2, RoboClaw).
     M1Home "m1_home" "M1 home" Signal [M1Home] [0x4000, 0x4000, 0, 0];
+    /// Motor 2's home input is active (generations 1 and 2, RoboClaw).
     M2Home "m2_home" "M2 home" Signal [M2Home] [0x8000, 0x8000, 0, 0];
+    /// Pin S4 is active: home, limit or stop (generations 3 and 4).
     S4Signal "s4_signal" "S4 signal" Signal [M1Home] [0, 0, 0x0040_0000, 0x0040_0000];
+    /// Pin S5 is active: home, limit or stop (generations 3 and 4).
     S5Signal "s5_signal" "S5 signal" Signal [M2Home] [0, 0, 0x0080_0000, 0x0080_0000];
-};
+}
 
 #[cfg(test)]
 mod tests {

@@ -3,71 +3,33 @@
 use super::super::command::{ClientUse, Command, Effect, Reply, Simulated};
 use super::super::field::{byte, field};
 use super::super::name;
-use super::super::number;
-use super::{CLIENTS, G3, G4, fields, forms, read, read_at, write, write_for};
+use super::{CLIENTS, G3, G4, fields, forms, read, read_at, rows, write, write_for};
 use brushwork_values::{Field, Kind, Unit};
 
-pub(super) const ROWS: &[Command] = &[
-    Command::new(
-        number::SET_NODE_ID,
-        "CANopen node id",
-        CLIENTS,
-        forms![write(G3, G4, Effect::Setting, fields![NODE_ID])],
-    )
-    .simulated(NO_BUS),
-    Command::new(
-        number::READ_NODE_ID,
-        "read CANopen node id",
-        CLIENTS,
-        forms![read(G3, G4, fields![NODE_ID])],
-    )
-    .simulated(NO_BUS),
-    Command::new(
-        number::READ_CAN_ERRORS,
-        "read CAN error state",
-        CLIENTS,
+pub(super) const ROWS: &[Command] = rows! {
+    CLIENTS SET_NODE_ID "CANopen node id" forms![write(G3, G4, Effect::Setting, fields![NODE_ID])],
+        simulated NO_BUS;
+    CLIENTS READ_NODE_ID "read CANopen node id" forms![read(G3, G4, fields![NODE_ID])], simulated NO_BUS;
+    CLIENTS READ_CAN_ERRORS "read CAN error state"
         forms![
             read(G4, G4, fields![field(name::ERRORS, Kind::U32, "the CAN error register").unit(Unit::Bits)])
                 .assumed(CONTRADICT)
-        ],
-    )
-    .simulated(QUIET_BUS)
-    .client(NEVER)
-    .note("The vendor's C++ library of 2025 reads one byte, the number of waiting messages."),
-    Command::new(
-        number::PUT_CAN_PACKET,
-        "send CAN message",
-        CLIENTS,
-        forms![write(G4, G4, Effect::Bus, MESSAGE)],
-    )
-    .simulated(LOOP_BACK),
-    Command::new(number::GET_CAN_PACKET, "read CAN message", CLIENTS, forms![read(G4, G4, RECEIVED)])
-        .simulated(LOOP_BACK)
-        .note(
-            "In the vendor's C++ library of 2025 a reply that does not start with 0xFF ends after that byte.",
-        ),
-    Command::new(
-        number::WRITE_CAN_DICTIONARY,
-        "write CANopen dictionary",
-        CLIENTS,
+        ], simulated QUIET_BUS, client NEVER,
+        note "The vendor's C++ library of 2025 reads one byte, the number of waiting messages.";
+    CLIENTS PUT_CAN_PACKET "send CAN message" forms![write(G4, G4, Effect::Bus, MESSAGE)],
+        simulated LOOP_BACK;
+    CLIENTS GET_CAN_PACKET "read CAN message" forms![read(G4, G4, RECEIVED)], simulated LOOP_BACK,
+        note "In the vendor's C++ library of 2025 a reply that does not start with 0xFF ends after that byte.";
+    CLIENTS WRITE_CAN_DICTIONARY "write CANopen dictionary"
         forms![
             write_for(G4, G4, Effect::Bus, WRITE_ENTRY, Reply::AckThenData(fields![RESULT]))
                 .assumed(CONTRADICT)
-        ],
-    )
-    .simulated(DICTIONARY)
-    .client(NEVER)
-    .note("The vendor's C++ library of 2025 expects no acknowledgement before the result."),
-    Command::new(
-        number::READ_CAN_DICTIONARY,
-        "read CANopen dictionary",
-        CLIENTS,
-        forms![read_at(G4, G4, ENTRY, READ_ENTRY).assumed(CONTRADICT)],
-    )
-    .simulated(DICTIONARY)
-    .client(NEVER)
-    .note("The vendor's C++ library of 2025 appends a CRC and starts the reply's CRC anew."),
-];
+        ], simulated DICTIONARY, client NEVER,
+        note "The vendor's C++ library of 2025 expects no acknowledgement before the result.";
+    CLIENTS READ_CAN_DICTIONARY "read CANopen dictionary"
+        forms![read_at(G4, G4, ENTRY, READ_ENTRY).assumed(CONTRADICT)], simulated DICTIONARY, client NEVER,
+        note "The vendor's C++ library of 2025 appends a CRC and starts the reply's CRC anew.";
+};
 
 const NO_BUS: Simulated =
     Simulated::StoredOnly("on a simulated CAN bus the unit answers to it from its next start on");

@@ -4,83 +4,55 @@
 use super::super::command::{ClientUse, Command, Effect, Form, Simulated};
 use super::super::field::{byte, celsius, field, volts};
 use super::super::name::{self, Name};
-use super::super::{number, scale};
-use super::{CLIENTS, G1, G2, G3, G4, MANUAL_ADVANCED, fields, forms, read, read_at, reads, sets, write};
+use super::super::scale;
+use super::{
+    CLIENTS, G1, G2, G3, G4, MANUAL_ADVANCED, fields, forms, read, read_at, reads, rows, sets, write,
+};
 use crate::codes;
 use brushwork_values::{Field, Kind, Unit};
 
-pub(super) const ROWS: &[Command] = &[
-    late(
-        number::SET_SERIAL_TIMEOUT,
-        "serial time-out",
+pub(super) const ROWS: &[Command] = rows! {
+    CLIENTS SET_SERIAL_TIMEOUT "serial time-out"
         forms![write(G2, G4, Effect::Setting, fields![SERIAL_TIMEOUT])],
-    )
-    .note("No source says which generation brought it; the library of 2015 does not have it."),
-    late(
-        number::READ_SERIAL_TIMEOUT,
-        "read serial time-out",
-        forms![read(G2, G4, fields![SERIAL_TIMEOUT])],
-    ),
-    manual(
-        number::RESTORE_DEFAULTS,
-        "restore defaults",
-        forms![write(G1, G2, Effect::Memory, &[]), write(G3, G4, Effect::Memory, KEY)],
-    )
-    .accepts(&[&[], KEY])
-    .note("Without the key later firmware does nothing."),
-    manual(number::SAVE_SETTINGS, "save settings", forms![write(G1, G4, Effect::Memory, KEY)])
-        .accepts(&[&[]])
-        .note("The manual prints neither key nor CRC. Some units restart after it and take seconds."),
-    manual(number::RELOAD_SETTINGS, "reload settings", forms![write(G1, G4, Effect::Memory, &[])])
-        .note("The manual prints a read with the reply of 91; all clients write. Sent right after 94 it can time out."),
-    late(number::SET_SERIAL_NUMBER, "serial number", SET_SERIAL).simulated(LABEL),
-    late(number::READ_SERIAL_NUMBER, "read serial number", READ_SERIAL).simulated(LABEL),
-    late(
-        number::SET_CONFIG,
-        "configuration word",
-        sets![CONFIG],
-    )
-    .simulated(Simulated::StoredOnly("a RoboClaw word, of which only the address acts; the MCP has 139 to 145 for what it says"))
-    .client(ClientUse::Superseded("the MCP has 139 to 147 for what it says"))
-    .note("Writing it can move the unit to another address at once."),
-    late(number::READ_CONFIG, "read configuration word", reads![CONFIG])
-        .simulated(Simulated::StoredOnly("a RoboClaw word, of which only the address acts; the MCP has 139 to 145 for what it says")),
-    late(number::READ_VOLTS, "read voltages", VOLTS)
-        .note("A factory test in generation 1, the CTRL modes in 2 and 3, which the simulated controller only stores."),
-    late(number::READ_TEMPERATURES, "read temperatures", TEMPERATURES)
-        .note("A factory test in generation 1, the CTRL modes in 2 and 3, which the simulated controller only stores."),
-    late(number::SET_AUX_DUTIES, "auxiliary duties", SET_AUX)
-        .simulated(CTRL_PINS)
-        .note("Sets the duty of the first CTRL pin in generations 2 and 3."),
-    late(number::READ_AUX_DUTIES, "read auxiliary duties", READ_AUX).simulated(CTRL_PINS),
-    late(number::SET_HOMING_M1, "M1 homing", SET_HOMING).simulated(HOMING),
-    late(number::SET_HOMING_M2, "M2 homing", SET_HOMING).simulated(HOMING),
-    late(number::READ_HOMING, "read homing", READ_HOMING).simulated(HOMING),
-    manual(number::SET_PWM_MODE, "PWM mode", SET_PWM).simulated(NO_RIPPLE),
-    manual(number::READ_PWM_MODE, "read PWM mode", READ_PWM).simulated(NO_RIPPLE),
-    late(
-        number::SET_PWM_IDLE,
-        "PWM idle",
-        forms![write(G3, G4, Effect::Setting, fields![idle(name::IDLE_M1), idle(name::IDLE_M2)])],
-    ),
-    late(
-        number::READ_PWM_IDLE,
-        "read PWM idle",
-        forms![read(G3, G4, fields![idle(name::IDLE_M1), idle(name::IDLE_M2)])],
-    ),
-    manual(
-        number::READ_USER_MEMORY,
-        "read user memory",
+        note "No source says which generation brought it; the library of 2015 does not have it.";
+    CLIENTS READ_SERIAL_TIMEOUT "read serial time-out" forms![read(G2, G4, fields![SERIAL_TIMEOUT])];
+    MANUAL_ADVANCED RESTORE_DEFAULTS "restore defaults"
+        forms![write(G1, G2, Effect::Memory, &[]), write(G3, G4, Effect::Memory, KEY)], accepts &[&[], KEY],
+        note "Without the key later firmware does nothing.";
+    MANUAL_ADVANCED SAVE_SETTINGS "save settings" forms![write(G1, G4, Effect::Memory, KEY)], accepts &[&[]],
+        note "The manual prints neither key nor CRC. Some units restart after it and take seconds.";
+    MANUAL_ADVANCED RELOAD_SETTINGS "reload settings" forms![write(G1, G4, Effect::Memory, &[])],
+        note "The manual prints a read with the reply of 91; all clients write. Sent right after 94 it can time out.";
+    CLIENTS SET_SERIAL_NUMBER "serial number" SET_SERIAL, simulated LABEL;
+    CLIENTS READ_SERIAL_NUMBER "read serial number" READ_SERIAL, simulated LABEL;
+    CLIENTS SET_CONFIG "configuration word" sets![CONFIG],
+        simulated Simulated::StoredOnly("a RoboClaw word, of which only the address acts; the MCP has 139 to 145 for what it says"),
+        client ClientUse::Superseded("the MCP has 139 to 147 for what it says"),
+        note "Writing it can move the unit to another address at once.";
+    CLIENTS READ_CONFIG "read configuration word" reads![CONFIG],
+        simulated Simulated::StoredOnly("a RoboClaw word, of which only the address acts; the MCP has 139 to 145 for what it says");
+    CLIENTS READ_VOLTS "read voltages" VOLTS,
+        note "A factory test in generation 1, the CTRL modes in 2 and 3, which the simulated controller only stores.";
+    CLIENTS READ_TEMPERATURES "read temperatures" TEMPERATURES,
+        note "A factory test in generation 1, the CTRL modes in 2 and 3, which the simulated controller only stores.";
+    CLIENTS SET_AUX_DUTIES "auxiliary duties" SET_AUX, simulated CTRL_PINS,
+        note "Sets the duty of the first CTRL pin in generations 2 and 3.";
+    CLIENTS READ_AUX_DUTIES "read auxiliary duties" READ_AUX, simulated CTRL_PINS;
+    CLIENTS SET_HOMING_M1 "M1 homing" SET_HOMING, simulated HOMING;
+    CLIENTS SET_HOMING_M2 "M2 homing" SET_HOMING, simulated HOMING;
+    CLIENTS READ_HOMING "read homing" READ_HOMING, simulated HOMING;
+    MANUAL_ADVANCED SET_PWM_MODE "PWM mode" SET_PWM, simulated NO_RIPPLE;
+    MANUAL_ADVANCED READ_PWM_MODE "read PWM mode" READ_PWM, simulated NO_RIPPLE;
+    CLIENTS SET_PWM_IDLE "PWM idle"
+        forms![write(G3, G4, Effect::Setting, fields![idle(name::IDLE_M1), idle(name::IDLE_M2)])];
+    CLIENTS READ_PWM_IDLE "read PWM idle"
+        forms![read(G3, G4, fields![idle(name::IDLE_M1), idle(name::IDLE_M2)])];
+    MANUAL_ADVANCED READ_USER_MEMORY "read user memory"
         forms![read_at(G1, G4, fields![USER_ADDRESS], fields![USER_VALUE])],
-    )
-    .note("The reply's CRC covers the address byte."),
-    manual(
-        number::WRITE_USER_MEMORY,
-        "write user memory",
-        sets![USER_ADDRESS, USER_VALUE],
-    )
-    .note("The manual's text calls it \"Get Priority Levels\"; the RoboClaw manual of 2018 swaps it with 252."),
-];
+        note "The reply's CRC covers the address byte.";
+    MANUAL_ADVANCED WRITE_USER_MEMORY "write user memory" sets![USER_ADDRESS, USER_VALUE],
+        note "The manual's text calls it \"Get Priority Levels\"; the RoboClaw manual of 2018 swaps it with 252.";
+};
 
 const LABEL: Simulated = Simulated::StoredOnly("a label that nothing else depends on");
 const CTRL_PINS: Simulated = Simulated::StoredOnly("the simulated models have no CTRL or auxiliary pins");
@@ -169,14 +141,6 @@ const READ_PWM: &[Form] = forms![
 
 const USER_ADDRESS: Field = byte(name::ADDRESS, "byte address in the user memory of 256 bytes");
 const USER_VALUE: Field = field(name::VALUE, Kind::U16, "the word there");
-
-const fn manual(number: u8, title: &'static str, forms: &'static [Form]) -> Command {
-    Command::new(number, title, MANUAL_ADVANCED, forms)
-}
-
-const fn late(number: u8, title: &'static str, forms: &'static [Form]) -> Command {
-    Command::new(number, title, CLIENTS, forms)
-}
 
 /// The library of 2015 waits up to five seconds for it, so the motor may well run.
 const fn qpps_test(title: &'static str) -> Form {

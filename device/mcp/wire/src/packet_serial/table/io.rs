@@ -3,59 +3,37 @@
 use super::super::command::{ClientUse, Command, Effect, Form, Simulated};
 use super::super::field::{byte, field};
 use super::super::name::{self, Name};
-use super::super::{number, scale};
-use super::{CLIENTS, G1, G2, G3, G4, MANUAL_ADVANCED, fields, forms, read, reads, sets, write};
+use super::super::scale;
+use super::{CLIENTS, G1, G2, G3, G4, MANUAL_ADVANCED, fields, forms, read, reads, rows, sets, write};
 use crate::codes;
 use brushwork_values::{Field, Kind, Unit};
 
-pub(super) const ROWS: &[Command] = &[
-    Command::new(number::SET_PIN_FUNCTIONS, "pin functions", CLIENTS, SET_PINS)
-        .simulated(ROBOCLAW_PINS)
-        .client(MCP_PINS),
-    Command::new(number::READ_PIN_FUNCTIONS, "read pin functions", CLIENTS, READ_PINS)
-        .simulated(ROBOCLAW_PINS)
-        .client(MCP_PINS),
-    Command::new(number::SET_CONTROL_SETTINGS, "control input settings", CLIENTS, SET_CONTROL)
-        .simulated(ROBOCLAW_PINS)
-        .client(MCP_PINS),
-    Command::new(number::READ_CONTROL_SETTINGS, "read control input settings", CLIENTS, READ_CONTROL)
-        .simulated(ROBOCLAW_PINS)
-        .client(MCP_PINS),
-    manual(
-        number::SET_DOUT_ACTION,
-        "digital output action",
-        sets![byte(name::INDEX, "output, counted from 0"), ACTION],
-    )
-    .note("The manual prints no reply."),
-    manual(
-        number::READ_DOUT_ACTIONS,
-        "read digital output actions",
-        reads![counted(name::DOUTS, fields![ACTION], "one record for each output of the model")],
-    ),
-    manual(number::SET_PRIORITIES, "priority levels", forms![write(G1, G4, Effect::Setting, PRIORITIES)]),
-    manual(number::READ_PRIORITIES, "read priority levels", forms![read(G1, G4, PRIORITIES)]),
-    manual(number::SET_ADDRESS_MIXED, "address and mixed mode", sets![ADDRESS, MIXED])
-        .note("Takes effect with the next packet."),
-    manual(
-        number::READ_ADDRESS_MIXED,
-        "read address and mixed mode",
-        forms![read(G1, G1, fields![MIXED]), read(G2, G4, fields![ADDRESS, MIXED])],
-    ),
-    manual(number::SET_SIGNAL, "signal properties", SET_SIGNAL).note(OUTPUT_RANGE),
-    manual(number::READ_SIGNALS, "read signal properties", READ_SIGNALS)
-        .note("The manual prints a further 0xFF after the reply; no client reads one."),
-    manual(number::SET_STREAM, "stream properties", forms![write(G1, G4, Effect::Setting, SET_STREAM)]),
-    manual(
-        number::READ_STREAMS,
-        "read stream properties",
-        reads![counted(name::STREAMS, STREAM, "one record for each stream, USB first")],
-    ),
-    manual(
-        number::READ_SIGNAL_VALUES,
-        "read signal values",
-        reads![counted(name::SIGNALS, VALUES, "one record for each signal")],
-    ),
-];
+pub(super) const ROWS: &[Command] = rows! {
+    CLIENTS SET_PIN_FUNCTIONS "pin functions" SET_PINS, simulated ROBOCLAW_PINS, client MCP_PINS;
+    CLIENTS READ_PIN_FUNCTIONS "read pin functions" READ_PINS, simulated ROBOCLAW_PINS, client MCP_PINS;
+    CLIENTS SET_CONTROL_SETTINGS "control input settings" SET_CONTROL, simulated ROBOCLAW_PINS,
+        client MCP_PINS;
+    CLIENTS READ_CONTROL_SETTINGS "read control input settings" READ_CONTROL, simulated ROBOCLAW_PINS,
+        client MCP_PINS;
+    MANUAL_ADVANCED SET_DOUT_ACTION "digital output action"
+        sets![byte(name::INDEX, "output, counted from 0"), ACTION], note "The manual prints no reply.";
+    MANUAL_ADVANCED READ_DOUT_ACTIONS "read digital output actions"
+        reads![counted(name::DOUTS, fields![ACTION], "one record for each output of the model")];
+    MANUAL_ADVANCED SET_PRIORITIES "priority levels" forms![write(G1, G4, Effect::Setting, PRIORITIES)];
+    MANUAL_ADVANCED READ_PRIORITIES "read priority levels" forms![read(G1, G4, PRIORITIES)];
+    MANUAL_ADVANCED SET_ADDRESS_MIXED "address and mixed mode" sets![ADDRESS, MIXED],
+        note "Takes effect with the next packet.";
+    MANUAL_ADVANCED READ_ADDRESS_MIXED "read address and mixed mode"
+        forms![read(G1, G1, fields![MIXED]), read(G2, G4, fields![ADDRESS, MIXED])];
+    MANUAL_ADVANCED SET_SIGNAL "signal properties" SET_SIGNAL, note OUTPUT_RANGE;
+    MANUAL_ADVANCED READ_SIGNALS "read signal properties" READ_SIGNALS,
+        note "The manual prints a further 0xFF after the reply; no client reads one.";
+    MANUAL_ADVANCED SET_STREAM "stream properties" forms![write(G1, G4, Effect::Setting, SET_STREAM)];
+    MANUAL_ADVANCED READ_STREAMS "read stream properties"
+        reads![counted(name::STREAMS, STREAM, "one record for each stream, USB first")];
+    MANUAL_ADVANCED READ_SIGNAL_VALUES "read signal values"
+        reads![counted(name::SIGNALS, VALUES, "one record for each signal")];
+};
 
 const ROBOCLAW_PINS: Simulated =
     Simulated::StoredOnly("RoboClaw pins; the simulated inputs are those of the MCP, set by 143");
@@ -180,10 +158,6 @@ const VALUES: &[Field] = fields![
     field(name::SPEED, Kind::I32, "speed at this moment"),
     field(name::AVERAGE_SPEED, Kind::I32, "averaged speed"),
 ];
-
-const fn manual(number: u8, title: &'static str, forms: &'static [Form]) -> Command {
-    Command::new(number, title, MANUAL_ADVANCED, forms)
-}
 
 const fn counted(name: impl Name, fields: &'static [Field], doc: &'static str) -> Field {
     field(name, Kind::Counted(fields), doc)

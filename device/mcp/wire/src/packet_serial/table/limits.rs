@@ -3,105 +3,66 @@
 use super::super::command::{Command, Effect, Form, Simulated};
 use super::super::field::{byte, field, volts};
 use super::super::name::{self, Name};
-use super::super::{number, scale};
-use super::{CLIENTS, G1, G3, G4, MANUAL_ADVANCED, fields, forms, read, reads, sets, write};
+use super::super::scale;
+use super::{CLIENTS, G1, G3, G4, MANUAL_ADVANCED, fields, forms, read, reads, rows, sets, write};
 use brushwork_values::{Field, Kind, Unit};
 
-pub(super) const ROWS: &[Command] = &[
-    manual(number::SET_MAIN_VOLTAGES, "main voltage limits", SET_MAIN)
-        .note("The simulated controller only stores the automatic offset of generation 4."),
-    manual(number::SET_LOGIC_VOLTAGES, "logic voltage limits", SET_LOGIC),
-    manual(number::READ_MAIN_VOLTAGES, "read main voltage limits", READ_MAIN),
-    manual(number::READ_LOGIC_VOLTAGES, "read logic voltage limits", READ_LOGIC),
-    late(
-        number::SET_SPEED_ERROR_LIMITS,
-        "speed error limits",
+pub(super) const ROWS: &[Command] = rows! {
+    MANUAL_ADVANCED SET_MAIN_VOLTAGES "main voltage limits" SET_MAIN,
+        note "The simulated controller only stores the automatic offset of generation 4.";
+    MANUAL_ADVANCED SET_LOGIC_VOLTAGES "logic voltage limits" SET_LOGIC;
+    MANUAL_ADVANCED READ_MAIN_VOLTAGES "read main voltage limits" READ_MAIN;
+    MANUAL_ADVANCED READ_LOGIC_VOLTAGES "read logic voltage limits" READ_LOGIC;
+    CLIENTS SET_SPEED_ERROR_LIMITS "speed error limits"
         forms![
             write(G3, G3, Effect::Setting, fields![wide(name::LIMIT_M1, SPEED), wide(name::LIMIT_M2, SPEED)]),
             write(G4, G4, Effect::Setting, fields![narrow(name::LIMIT_M1, SPEED), narrow(name::LIMIT_M2, SPEED)]),
-        ],
-    ),
-    late(
-        number::READ_SPEED_ERROR_LIMITS,
-        "read speed error limits",
+        ];
+    CLIENTS READ_SPEED_ERROR_LIMITS "read speed error limits"
         forms![
             read(G3, G3, fields![wide(name::LIMIT_M1, SPEED), wide(name::LIMIT_M2, SPEED)]),
             read(G4, G4, fields![narrow(name::LIMIT_M1, SPEED), narrow(name::LIMIT_M2, SPEED)]),
-        ],
-    ),
-    late(
-        number::READ_SPEED_ERRORS,
-        "read speed errors",
+        ];
+    CLIENTS READ_SPEED_ERRORS "read speed errors"
         forms![
             read(G3, G3, fields![error(name::ERROR_M1, SPEED), error(name::ERROR_M2, SPEED)]),
             read(G4, G4, fields![narrow_error(name::ERROR_M1, SPEED), narrow_error(name::ERROR_M2, SPEED)]),
-        ],
-    ),
-    late(
-        number::SET_POSITION_ERROR_LIMITS,
-        "position error limits",
+        ];
+    CLIENTS SET_POSITION_ERROR_LIMITS "position error limits"
         forms![
             write(G3, G3, Effect::Setting, fields![wide(name::LIMIT_M1, POSITION), wide(name::LIMIT_M2, POSITION)]),
             write(G4, G4, Effect::Setting, fields![narrow(name::LIMIT_M1, POSITION), narrow(name::LIMIT_M2, POSITION)]),
-        ],
-    )
-    .note("The vendor says that these limits act only where acceleration and deceleration are set."),
-    late(
-        number::READ_POSITION_ERROR_LIMITS,
-        "read position error limits",
+        ], note "The vendor says that these limits act only where acceleration and deceleration are set.";
+    CLIENTS READ_POSITION_ERROR_LIMITS "read position error limits"
         forms![
             read(G3, G3, fields![wide(name::LIMIT_M1, POSITION), wide(name::LIMIT_M2, POSITION)]),
             read(G4, G4, fields![narrow(name::LIMIT_M1, POSITION), narrow(name::LIMIT_M2, POSITION)]),
-        ],
-    ),
-    late(
-        number::READ_POSITION_ERRORS,
-        "read position errors",
+        ];
+    CLIENTS READ_POSITION_ERRORS "read position errors"
         forms![
             read(G3, G3, fields![error(name::ERROR_M1, POSITION), error(name::ERROR_M2, POSITION)]),
             read(G4, G4, fields![narrow_error(name::ERROR_M1, POSITION), narrow_error(name::ERROR_M2, POSITION)]),
-        ],
-    ),
-    late(
-        number::SET_VOLTAGE_OFFSETS,
-        "voltage offsets",
-        forms![write(G3, G4, Effect::Setting, fields![offset(name::MAIN), offset(name::LOGIC)])],
-    ),
-    late(
-        number::READ_VOLTAGE_OFFSETS,
-        "read voltage offsets",
-        forms![read(G3, G4, fields![offset(name::MAIN), offset(name::LOGIC)])],
-    ),
-    late(
-        number::SET_CONTROL_LIMITS,
-        "control input limits",
-        forms![write(G3, G3, Effect::Setting, CONTROL_LIMITS)],
-    )
-    .simulated(CONTROL_INPUTS)
-    .note(BLANKING),
-    late(
-        number::READ_CONTROL_LIMITS,
-        "read control input limits",
-        forms![read(G3, G3, CONTROL_LIMITS)],
-    )
-    .simulated(CONTROL_INPUTS)
-    .note(BLANKING),
-    manual(number::SET_CURRENT_LIMITS_M1, "M1 current limits", SET_CURRENT)
-        .note("The manual prints command byte 134 and zeros for the minimum. From 2018 the minimum is sent as a positive magnitude."),
-    manual(number::SET_CURRENT_LIMITS_M2, "M2 current limits", SET_CURRENT)
-        .note("From 2018 the minimum is sent as a positive magnitude."),
-    manual(number::READ_CURRENT_LIMITS_M1, "read M1 current limits", READ_CURRENT),
-    manual(number::READ_CURRENT_LIMITS_M2, "read M2 current limits", READ_CURRENT),
-    manual(number::RESET_ESTOP, "reset E-stop", sets![])
-        .note("Does nothing unless the reset is unlocked (201)."),
-    manual(
-        number::SET_ESTOP_LOCK,
-        "E-stop reset lock",
-        sets![LOCK],
-    )
-    .note("The manual prints neither argument nor CRC, and the reply of 202."),
-    manual(number::READ_ESTOP_LOCK, "read E-stop reset lock", reads![LOCK]),
-];
+        ];
+    CLIENTS SET_VOLTAGE_OFFSETS "voltage offsets"
+        forms![write(G3, G4, Effect::Setting, fields![offset(name::MAIN), offset(name::LOGIC)])];
+    CLIENTS READ_VOLTAGE_OFFSETS "read voltage offsets"
+        forms![read(G3, G4, fields![offset(name::MAIN), offset(name::LOGIC)])];
+    CLIENTS SET_CONTROL_LIMITS "control input limits" forms![write(G3, G3, Effect::Setting, CONTROL_LIMITS)],
+        simulated CONTROL_INPUTS, note BLANKING;
+    CLIENTS READ_CONTROL_LIMITS "read control input limits" forms![read(G3, G3, CONTROL_LIMITS)],
+        simulated CONTROL_INPUTS, note BLANKING;
+    MANUAL_ADVANCED SET_CURRENT_LIMITS_M1 "M1 current limits" SET_CURRENT,
+        note "The manual prints command byte 134 and zeros for the minimum. From 2018 the minimum is sent as a positive magnitude.";
+    MANUAL_ADVANCED SET_CURRENT_LIMITS_M2 "M2 current limits" SET_CURRENT,
+        note "From 2018 the minimum is sent as a positive magnitude.";
+    MANUAL_ADVANCED READ_CURRENT_LIMITS_M1 "read M1 current limits" READ_CURRENT;
+    MANUAL_ADVANCED READ_CURRENT_LIMITS_M2 "read M2 current limits" READ_CURRENT;
+    MANUAL_ADVANCED RESET_ESTOP "reset E-stop" sets![],
+        note "Does nothing unless the reset is unlocked (201).";
+    MANUAL_ADVANCED SET_ESTOP_LOCK "E-stop reset lock" sets![LOCK],
+        note "The manual prints neither argument nor CRC, and the reply of 202.";
+    MANUAL_ADVANCED READ_ESTOP_LOCK "read E-stop reset lock" reads![LOCK];
+};
 
 const CONTROL_INPUTS: Simulated =
     Simulated::StoredOnly("the simulated inputs are those of the MCP, set by 143");
@@ -139,14 +100,6 @@ const CONTROL_LIMITS: &[Field] = fields![
 
 const LOCK: Field =
     byte(name::LOCK, "0xAA lets software reset; 0x55 resets by itself (generation 4); else only hardware");
-
-const fn manual(number: u8, title: &'static str, forms: &'static [Form]) -> Command {
-    Command::new(number, title, MANUAL_ADVANCED, forms)
-}
-
-const fn late(number: u8, title: &'static str, forms: &'static [Form]) -> Command {
-    Command::new(number, title, CLIENTS, forms)
-}
 
 const fn wide(name: impl Name, unit: Unit) -> Field {
     field(name, Kind::U32, "error at which the motor is stopped; 0 for none").unit(unit)

@@ -131,7 +131,16 @@ macro_rules! sets {
     };
 }
 
-use {fields, forms, reads, sets};
+/// The rows of a theme: where a command is described, its number, title and forms, and what else there is to say.
+macro_rules! rows {
+    ($($source:ident $number:ident $title:literal $forms:expr $(, $part:ident $value:expr)*;)*) => {
+        &[$(
+            Command::new($crate::packet_serial::number::$number, $title, $source, $forms)$(.$part($value))*
+        ),*]
+    };
+}
+
+use {fields, forms, reads, rows, sets};
 
 /// A read without arguments that every generation has.
 const fn always_read(reply: &'static [Field]) -> Form {

@@ -3,43 +3,35 @@
 use super::super::command::{Command, Effect, Form};
 use super::super::field::{accel, byte, distance, duty, duty_accel, field, position, speed};
 use super::super::name::{self, Name};
-use super::super::{number, scale};
-use super::{CLIENTS, G1, G3, G4, MANUAL_MOTION, fields, forms, write};
+use super::super::scale;
+use super::{CLIENTS, G1, G3, G4, MANUAL_MOTION, fields, forms, rows, write};
 use brushwork_values::{Field, Kind, Unit};
 
-pub(super) const ROWS: &[Command] = &[
-    row(number::DUTY_M1, "M1 duty", DUTY),
-    row(number::DUTY_M2, "M2 duty", DUTY),
-    row(number::DUTY_BOTH, "duty", forms![drive(fields![duty(name::DUTY_M1), duty(name::DUTY_M2)])]),
-    row(number::SPEED_M1, "M1 speed", SPEED),
-    row(number::SPEED_M2, "M2 speed", SPEED),
-    row(number::SPEED_BOTH, "speed", forms![drive(fields![speed(name::SPEED_M1), speed(name::SPEED_M2)])]),
-    row(number::SPEED_ACCEL_M1, "M1 speed with acceleration", SPEED_ACCEL),
-    row(number::SPEED_ACCEL_M2, "M2 speed with acceleration", SPEED_ACCEL),
-    row(
-        number::SPEED_ACCEL_BOTH,
-        "speed with acceleration",
-        forms![drive(fields![accel(name::ACCEL), speed(name::SPEED_M1), speed(name::SPEED_M2)])],
-    ),
-    row(number::SPEED_DISTANCE_M1, "M1 distance", SPEED_DISTANCE),
-    row(number::SPEED_DISTANCE_M2, "M2 distance", SPEED_DISTANCE),
-    row(
-        number::SPEED_DISTANCE_BOTH,
-        "distance",
+pub(super) const ROWS: &[Command] = rows! {
+    MANUAL_MOTION DUTY_M1 "M1 duty" DUTY;
+    MANUAL_MOTION DUTY_M2 "M2 duty" DUTY;
+    MANUAL_MOTION DUTY_BOTH "duty" forms![drive(fields![duty(name::DUTY_M1), duty(name::DUTY_M2)])];
+    MANUAL_MOTION SPEED_M1 "M1 speed" SPEED;
+    MANUAL_MOTION SPEED_M2 "M2 speed" SPEED;
+    MANUAL_MOTION SPEED_BOTH "speed" forms![drive(fields![speed(name::SPEED_M1), speed(name::SPEED_M2)])];
+    MANUAL_MOTION SPEED_ACCEL_M1 "M1 speed with acceleration" SPEED_ACCEL;
+    MANUAL_MOTION SPEED_ACCEL_M2 "M2 speed with acceleration" SPEED_ACCEL;
+    MANUAL_MOTION SPEED_ACCEL_BOTH "speed with acceleration"
+        forms![drive(fields![accel(name::ACCEL), speed(name::SPEED_M1), speed(name::SPEED_M2)])];
+    MANUAL_MOTION SPEED_DISTANCE_M1 "M1 distance" SPEED_DISTANCE;
+    MANUAL_MOTION SPEED_DISTANCE_M2 "M2 distance" SPEED_DISTANCE;
+    MANUAL_MOTION SPEED_DISTANCE_BOTH "distance"
         forms![travel(fields![
             speed(name::SPEED_M1),
             distance(name::DISTANCE_M1),
             speed(name::SPEED_M2),
             distance(name::DISTANCE_M2),
             BUFFER,
-        ])],
-    ),
-    row(number::SPEED_ACCEL_DISTANCE_M1, "M1 distance with acceleration", SPEED_ACCEL_DISTANCE)
-        .note("The manual's copy at hand lacks the send line; as 45."),
-    row(number::SPEED_ACCEL_DISTANCE_M2, "M2 distance with acceleration", SPEED_ACCEL_DISTANCE),
-    row(
-        number::SPEED_ACCEL_DISTANCE_BOTH,
-        "distance with acceleration",
+        ])];
+    MANUAL_MOTION SPEED_ACCEL_DISTANCE_M1 "M1 distance with acceleration" SPEED_ACCEL_DISTANCE,
+        note "The manual's copy at hand lacks the send line; as 45.";
+    MANUAL_MOTION SPEED_ACCEL_DISTANCE_M2 "M2 distance with acceleration" SPEED_ACCEL_DISTANCE;
+    MANUAL_MOTION SPEED_ACCEL_DISTANCE_BOTH "distance with acceleration"
         forms![travel(fields![
             accel(name::ACCEL),
             speed(name::SPEED_M1),
@@ -47,21 +39,15 @@ pub(super) const ROWS: &[Command] = &[
             speed(name::SPEED_M2),
             distance(name::DISTANCE_M2),
             BUFFER,
-        ])],
-    ),
-    row(
-        number::SPEED_ACCEL_EACH,
-        "speed with acceleration each",
+        ])];
+    MANUAL_MOTION SPEED_ACCEL_EACH "speed with acceleration each"
         forms![drive(fields![
             accel(name::ACCEL_M1),
             speed(name::SPEED_M1),
             accel(name::ACCEL_M2),
             speed(name::SPEED_M2)
-        ])],
-    ),
-    row(
-        number::SPEED_ACCEL_DISTANCE_EACH,
-        "distance with acceleration each",
+        ])];
+    MANUAL_MOTION SPEED_ACCEL_DISTANCE_EACH "distance with acceleration each"
         forms![travel(fields![
             accel(name::ACCEL_M1),
             speed(name::SPEED_M1),
@@ -70,52 +56,38 @@ pub(super) const ROWS: &[Command] = &[
             speed(name::SPEED_M2),
             distance(name::DISTANCE_M2),
             BUFFER,
-        ])],
-    ),
-    row(number::DUTY_ACCEL_M1, "M1 duty with acceleration", DUTY_ACCEL).note(FOUR_BYTES),
-    row(number::DUTY_ACCEL_M2, "M2 duty with acceleration", DUTY_ACCEL).note(FOUR_BYTES),
-    row(
-        number::DUTY_ACCEL_BOTH,
-        "duty with acceleration",
+        ])];
+    MANUAL_MOTION DUTY_ACCEL_M1 "M1 duty with acceleration" DUTY_ACCEL, note FOUR_BYTES;
+    MANUAL_MOTION DUTY_ACCEL_M2 "M2 duty with acceleration" DUTY_ACCEL, note FOUR_BYTES;
+    MANUAL_MOTION DUTY_ACCEL_BOTH "duty with acceleration"
         forms![drive(fields![
             duty(name::DUTY_M1),
             duty_accel(name::ACCEL_M1),
             duty(name::DUTY_M2),
             duty_accel(name::ACCEL_M2)
-        ])],
-    )
-    .note("The manual's copy at hand lacks the layout; all clients send this one."),
-    row(number::POSITION_PROFILE_M1, "M1 position with profile", PROFILE).note(UNSIGNED_SPEED),
-    row(number::POSITION_PROFILE_M2, "M2 position with profile", PROFILE).note(UNSIGNED_SPEED),
-    row(number::POSITION_PROFILE_BOTH, "position with profile", PROFILE_BOTH).note(UNSIGNED_SPEED),
-    late(number::POSITION_M1, "M1 position", forms![queue(fields![position(name::POSITION), BUFFER])]),
-    late(number::POSITION_M2, "M2 position", forms![queue(fields![position(name::POSITION), BUFFER])]),
-    late(
-        number::POSITION_BOTH,
-        "position",
-        forms![queue(fields![position(name::POSITION_M1), position(name::POSITION_M2), BUFFER])],
-    ),
-    late(number::SPEED_POSITION_M1, "M1 position with speed", SPEED_POSITION),
-    late(number::SPEED_POSITION_M2, "M2 position with speed", SPEED_POSITION),
-    late(
-        number::SPEED_POSITION_BOTH,
-        "position with speed",
+        ])], note "The manual's copy at hand lacks the layout; all clients send this one.";
+    MANUAL_MOTION POSITION_PROFILE_M1 "M1 position with profile" PROFILE, note UNSIGNED_SPEED;
+    MANUAL_MOTION POSITION_PROFILE_M2 "M2 position with profile" PROFILE, note UNSIGNED_SPEED;
+    MANUAL_MOTION POSITION_PROFILE_BOTH "position with profile" PROFILE_BOTH, note UNSIGNED_SPEED;
+    CLIENTS POSITION_M1 "M1 position" forms![queue(fields![position(name::POSITION), BUFFER])];
+    CLIENTS POSITION_M2 "M2 position" forms![queue(fields![position(name::POSITION), BUFFER])];
+    CLIENTS POSITION_BOTH "position"
+        forms![queue(fields![position(name::POSITION_M1), position(name::POSITION_M2), BUFFER])];
+    CLIENTS SPEED_POSITION_M1 "M1 position with speed" SPEED_POSITION;
+    CLIENTS SPEED_POSITION_M2 "M2 position with speed" SPEED_POSITION;
+    CLIENTS SPEED_POSITION_BOTH "position with speed"
         forms![queue(fields![
             travel_speed(name::SPEED_M1),
             position(name::POSITION_M1),
             travel_speed(name::SPEED_M2),
             position(name::POSITION_M2),
             BUFFER,
-        ])],
-    ),
-    late(number::PERCENT_POSITION_M1, "M1 position in percent", PERCENT),
-    late(number::PERCENT_POSITION_M2, "M2 position in percent", PERCENT),
-    late(
-        number::PERCENT_POSITION_BOTH,
-        "position in percent",
-        forms![queue(fields![percent(name::POSITION_M1), percent(name::POSITION_M2), BUFFER])],
-    ),
-];
+        ])];
+    CLIENTS PERCENT_POSITION_M1 "M1 position in percent" PERCENT;
+    CLIENTS PERCENT_POSITION_M2 "M2 position in percent" PERCENT;
+    CLIENTS PERCENT_POSITION_BOTH "position in percent"
+        forms![queue(fields![percent(name::POSITION_M1), percent(name::POSITION_M2), BUFFER])];
+};
 
 const FOUR_BYTES: &str =
     "The manual prints two bytes of acceleration with a range that needs four; all clients send four.";
@@ -157,14 +129,6 @@ const PERCENT: &[Form] = forms![queue(fields![percent(name::POSITION), BUFFER])]
 
 const BUFFER: Field =
     byte(name::BUFFER, "0 queues the command, 1 drops what runs and waits and starts it at once").range(0, 1);
-
-const fn row(number: u8, title: &'static str, forms: &'static [Form]) -> Command {
-    Command::new(number, title, MANUAL_MOTION, forms)
-}
-
-const fn late(number: u8, title: &'static str, forms: &'static [Form]) -> Command {
-    Command::new(number, title, CLIENTS, forms)
-}
 
 const fn drive(request: &'static [Field]) -> Form {
     write(G1, G4, Effect::Motion, request)

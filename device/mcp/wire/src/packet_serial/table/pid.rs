@@ -3,49 +3,44 @@
 use super::super::command::{Command, Effect, Form, Simulated};
 use super::super::field::{duty_accel, field, position};
 use super::super::name::{self, Name};
-use super::super::{number, scale};
+use super::super::scale;
 use super::{
-    CLIENTS, G1, G2, G3, G4, MANUAL_ADVANCED, MANUAL_MOTION, fields, forms, read, reads, sets, write,
+    CLIENTS, G1, G2, G3, G4, MANUAL_ADVANCED, MANUAL_MOTION, fields, forms, read, reads, rows, sets, write,
 };
 use brushwork_values::{Field, Kind, Unit};
 
-pub(super) const ROWS: &[Command] = &[
-    row(number::SET_VELOCITY_PID_M1, "M1 velocity PID", SET_VELOCITY),
-    row(number::SET_VELOCITY_PID_M2, "M2 velocity PID", SET_VELOCITY),
-    row(number::READ_VELOCITY_PID_M1, "read M1 velocity PID", READ_VELOCITY).note(ORDER),
-    row(number::READ_VELOCITY_PID_M2, "read M2 velocity PID", READ_VELOCITY).note(ORDER),
-    row(number::SET_POSITION_PID_M1, "M1 position PID", SET_POSITION).note(FACTOR),
-    row(number::SET_POSITION_PID_M2, "M2 position PID", SET_POSITION).note(FACTOR),
-    row(number::READ_POSITION_PID_M1, "read M1 position PID", READ_POSITION).note(NO_LINE),
-    row(number::READ_POSITION_PID_M2, "read M2 position PID", READ_POSITION).note(NO_LINE),
-    row(number::SET_DEFAULT_ACCEL_M1, "M1 default acceleration", SET_ACCEL),
-    row(number::SET_DEFAULT_ACCEL_M2, "M2 default acceleration", SET_ACCEL),
-    Command::new(number::SET_DEFAULT_SPEED_M1, "M1 default speed", CLIENTS, SET_SPEED),
-    Command::new(number::SET_DEFAULT_SPEED_M2, "M2 default speed", CLIENTS, SET_SPEED),
-    Command::new(
-        number::READ_DEFAULT_SPEEDS,
-        "read default speeds",
-        CLIENTS,
-        forms![read(G3, G4, fields![default_speed(name::SPEED_M1), default_speed(name::SPEED_M2)])],
-    ),
-    row(number::READ_DEFAULT_ACCELS, "read default accelerations", READ_ACCELS),
-    torque(number::SET_INDUCTANCE_RESISTANCE_M1, "M1 inductance and resistance", SET_LR),
-    torque(number::SET_INDUCTANCE_RESISTANCE_M2, "M2 inductance and resistance", SET_LR),
-    torque(number::READ_INDUCTANCE_RESISTANCE_M1, "read M1 inductance and resistance", READ_LR),
-    torque(number::READ_INDUCTANCE_RESISTANCE_M2, "read M2 inductance and resistance", READ_LR),
-    Command::new(
-        number::CALIBRATE_INDUCTANCE_RESISTANCE,
-        "calibrate inductance and resistance",
-        CLIENTS,
+pub(super) const ROWS: &[Command] = rows! {
+    MANUAL_MOTION SET_VELOCITY_PID_M1 "M1 velocity PID" SET_VELOCITY;
+    MANUAL_MOTION SET_VELOCITY_PID_M2 "M2 velocity PID" SET_VELOCITY;
+    MANUAL_MOTION READ_VELOCITY_PID_M1 "read M1 velocity PID" READ_VELOCITY, note ORDER;
+    MANUAL_MOTION READ_VELOCITY_PID_M2 "read M2 velocity PID" READ_VELOCITY, note ORDER;
+    MANUAL_MOTION SET_POSITION_PID_M1 "M1 position PID" SET_POSITION, note FACTOR;
+    MANUAL_MOTION SET_POSITION_PID_M2 "M2 position PID" SET_POSITION, note FACTOR;
+    MANUAL_MOTION READ_POSITION_PID_M1 "read M1 position PID" READ_POSITION, note NO_LINE;
+    MANUAL_MOTION READ_POSITION_PID_M2 "read M2 position PID" READ_POSITION, note NO_LINE;
+    MANUAL_MOTION SET_DEFAULT_ACCEL_M1 "M1 default acceleration" SET_ACCEL;
+    MANUAL_MOTION SET_DEFAULT_ACCEL_M2 "M2 default acceleration" SET_ACCEL;
+    CLIENTS SET_DEFAULT_SPEED_M1 "M1 default speed" SET_SPEED;
+    CLIENTS SET_DEFAULT_SPEED_M2 "M2 default speed" SET_SPEED;
+    CLIENTS READ_DEFAULT_SPEEDS "read default speeds"
+        forms![read(G3, G4, fields![default_speed(name::SPEED_M1), default_speed(name::SPEED_M2)])];
+    MANUAL_MOTION READ_DEFAULT_ACCELS "read default accelerations" READ_ACCELS;
+    MANUAL_ADVANCED SET_INDUCTANCE_RESISTANCE_M1 "M1 inductance and resistance" SET_LR, note TWO_TO_24;
+    MANUAL_ADVANCED SET_INDUCTANCE_RESISTANCE_M2 "M2 inductance and resistance" SET_LR, note TWO_TO_24;
+    MANUAL_ADVANCED READ_INDUCTANCE_RESISTANCE_M1 "read M1 inductance and resistance" READ_LR, note TWO_TO_24;
+    MANUAL_ADVANCED READ_INDUCTANCE_RESISTANCE_M2 "read M2 inductance and resistance" READ_LR, note TWO_TO_24;
+    CLIENTS CALIBRATE_INDUCTANCE_RESISTANCE "calibrate inductance and resistance"
         forms![write(G1, G3, Effect::RelativeMotion, &[])],
-    )
-    .simulated(Simulated::Inert("how the unit measures is not public")),
-];
+        simulated Simulated::Inert("how the unit measures is not public");
+};
 
 const ORDER: &str = "Read in the order P, I, D, written in the order D, P, I.";
 const FACTOR: &str = "The manual gives no factor for the gains; all vendor libraries use 1024.";
 const NO_LINE: &str =
     "The manual's copy at hand lacks the receive line. Read in the order P, I, D, written D, P, I.";
+
+const TWO_TO_24: &str =
+    "L and R times 2^24. The vendor's Arduino library of 2025 sends floats and calls that a guess.";
 
 const SET_VELOCITY: &[Form] = sets![
     velocity_gain(name::D, "D", 3),
@@ -114,15 +109,6 @@ const RESISTANCE: Field =
     field(name::RESISTANCE, Kind::U32, "of the armature; with the inductance selects torque control")
         .scaled(Unit::Ohms, 1.0 / scale::INDUCTANCE_RESISTANCE, 6)
         .label("R");
-
-const fn row(number: u8, title: &'static str, forms: &'static [Form]) -> Command {
-    Command::new(number, title, MANUAL_MOTION, forms)
-}
-
-const fn torque(number: u8, title: &'static str, forms: &'static [Form]) -> Command {
-    Command::new(number, title, MANUAL_ADVANCED, forms)
-        .note("L and R times 2^24. The vendor's Arduino library of 2025 sends floats and calls that a guess.")
-}
 
 const fn velocity_gain(name: impl Name, label: &'static str, rank: u8) -> Field {
     gain(name, label, rank, scale::VELOCITY_GAIN, "gain times 65536")

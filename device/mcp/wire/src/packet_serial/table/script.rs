@@ -3,42 +3,26 @@
 use super::super::command::{ClientUse, Command, Effect, Form, Reply, Simulated};
 use super::super::field::{byte, field};
 use super::super::name;
-use super::super::number;
-use super::{CLIENTS, G1, G4, MANUAL_ADVANCED, fields, forms, reads, sets, write, write_for};
+use super::{CLIENTS, G1, G4, MANUAL_ADVANCED, fields, forms, reads, rows, sets, write, write_for};
 use crate::models::Family;
 use brushwork_values::{Field, Kind, Unit};
 
-pub(super) const ROWS: &[Command] = &[
-    manual(
-        number::SET_SCRIPT_AUTORUN,
-        "script autorun delay",
-        sets![DELAY],
-    )
-    .note("A client of 2025 refuses to send 1 to 99."),
-    manual(
-        number::READ_SCRIPT_AUTORUN,
-        "read script autorun delay",
-        reads![DELAY],
-    ),
-    manual(number::START_SCRIPT, "start script", forms![write(G1, G4, Effect::Script, &[])]),
-    manual(number::STOP_SCRIPT, "stop script", forms![write(G1, G4, Effect::Stop, &[])]),
-    Command::new(number::ERASE_SCRIPT, "erase script", CLIENTS, ERASE).only(Family::Mcp),
-    Command::new(number::WRITE_SCRIPT, "write script", CLIENTS, WRITE).only(Family::Mcp),
-    Command::new(number::READ_SCRIPT, "read script", CLIENTS, &[])
-        .simulated(Simulated::Silent("only the number is public, not the layout"))
-        .client(ClientUse::Never("only the number is public, not the layout"))
-        .only(Family::Mcp),
-    Command::new(
-        number::ENTER_LOADER,
-        "enter firmware loader",
-        CLIENTS,
-        forms![write(G1, G4, Effect::Loader, LOADER)],
-    )
-    .note(
-        "It ends packet serial: the unit restarts as a USB device of another name and waits for an image. Libraries do not \
-         insist on the acknowledgement.",
-    ),
-];
+// MCL is the MCP's (MCP manual 3.0.1): no RoboClaw manual has these numbers.
+pub(super) const ROWS: &[Command] = rows! {
+    MANUAL_ADVANCED SET_SCRIPT_AUTORUN "script autorun delay" sets![DELAY], only Family::Mcp,
+        note "A client of 2025 refuses to send 1 to 99.";
+    MANUAL_ADVANCED READ_SCRIPT_AUTORUN "read script autorun delay" reads![DELAY], only Family::Mcp;
+    MANUAL_ADVANCED START_SCRIPT "start script" forms![write(G1, G4, Effect::Script, &[])], only Family::Mcp;
+    MANUAL_ADVANCED STOP_SCRIPT "stop script" forms![write(G1, G4, Effect::Stop, &[])], only Family::Mcp;
+    CLIENTS ERASE_SCRIPT "erase script" ERASE, only Family::Mcp;
+    CLIENTS WRITE_SCRIPT "write script" WRITE, only Family::Mcp;
+    CLIENTS READ_SCRIPT "read script" &[],
+        simulated Simulated::Silent("only the number is public, not the layout"),
+        client ClientUse::Never("only the number is public, not the layout"), only Family::Mcp;
+    CLIENTS ENTER_LOADER "enter firmware loader" forms![write(G1, G4, Effect::Loader, LOADER)],
+        note "It ends packet serial: the unit restarts as a USB device of another name and waits for an image. Libraries do not \
+         insist on the acknowledgement.";
+};
 
 const DELAY: Field = field(name::DELAY, Kind::U32, "time after a reset; below 100 the script is not run")
     .unit(Unit::Milliseconds);
@@ -70,8 +54,3 @@ const LOADER: &[Field] = fields![
     byte(name::MARK, "always FF").unit(Unit::Bits).fixed(0xFF),
     field(name::KEY, Kind::U32, "the key A5A51234").unit(Unit::Bits).fixed(0xA5A5_1234),
 ];
-
-const fn manual(number: u8, title: &'static str, forms: &'static [Form]) -> Command {
-    // MCL is the MCP's (MCP manual 3.0.1): no RoboClaw manual has these numbers.
-    Command::new(number, title, MANUAL_ADVANCED, forms).only(Family::Mcp)
-}

@@ -3,40 +3,28 @@
 use super::super::command::{Command, Form};
 use super::super::field::{amps, byte, celsius, duty, field, position, speed, volts};
 use super::super::name::{self, Name};
-use super::super::number;
-use super::{CLIENTS, G1, G2, G3, G4, MANUAL_ADVANCED, MANUAL_MOTION, fields, forms, read, reads};
+use super::{CLIENTS, G1, G2, G3, G4, MANUAL_ADVANCED, MANUAL_MOTION, fields, forms, read, reads, rows};
 use brushwork_values::{Field, Kind, Unit};
 
-pub(super) const ROWS: &[Command] = &[
-    manual(
-        number::READ_VERSION,
-        "read version",
-        reads![field(name::VERSION, Kind::Text { max: 48 }, "model and firmware version")],
-    ),
-    manual(number::READ_MAIN_BATTERY, "read main battery", reads![volts(name::MAIN_BATTERY)]),
-    manual(number::READ_LOGIC_BATTERY, "read logic battery", reads![volts(name::LOGIC_BATTERY)]),
-    Command::new(
-        number::READ_BUFFERS,
-        "read buffer lengths",
-        MANUAL_MOTION,
-        reads![buffer(name::BUFFER_M1), buffer(name::BUFFER_M2)],
-    )
-    .note("Clients of 2025 say that 0 means empty; the manual's 0x80 is followed."),
-    manual(number::READ_PWMS, "read motor PWM", reads![duty(name::DUTY_M1), duty(name::DUTY_M2)]),
-    manual(
-        number::READ_CURRENTS,
-        "read motor currents",
+pub(super) const ROWS: &[Command] = rows! {
+    MANUAL_ADVANCED READ_VERSION "read version"
+        reads![field(name::VERSION, Kind::Text { max: 48 }, "model and firmware version")];
+    MANUAL_ADVANCED READ_MAIN_BATTERY "read main battery" reads![volts(name::MAIN_BATTERY)];
+    MANUAL_ADVANCED READ_LOGIC_BATTERY "read logic battery" reads![volts(name::LOGIC_BATTERY)];
+    MANUAL_MOTION READ_BUFFERS "read buffer lengths" reads![buffer(name::BUFFER_M1), buffer(name::BUFFER_M2)],
+        note "Clients of 2025 say that 0 means empty; the manual's 0x80 is followed.";
+    MANUAL_ADVANCED READ_PWMS "read motor PWM" reads![duty(name::DUTY_M1), duty(name::DUTY_M2)];
+    MANUAL_ADVANCED READ_CURRENTS "read motor currents"
         reads![amps(name::CURRENT_M1), amps(name::CURRENT_M2)],
-    )
-    .note("The manual gives no sign; most clients read it with one."),
-    Command::new(number::READ_ALL_STATUS, "read all status", CLIENTS, forms![read(G4, G4, ALL_STATUS)])
-        .note("Firmware 4.2.8 does not answer it."),
-    manual(number::READ_TEMPERATURE_1, "read temperature 1", reads![celsius(name::TEMPERATURE_1)]),
-    manual(number::READ_TEMPERATURE_2, "read temperature 2", reads![celsius(name::TEMPERATURE_2)])
-        .note("Only on units with a second sensor."),
-    manual(number::READ_STATUS, "read status", STATUS)
-        .note("The bits mean different things in two bytes and in four; see the table of status bits."),
-];
+        note "The manual gives no sign; most clients read it with one.";
+    CLIENTS READ_ALL_STATUS "read all status" forms![read(G4, G4, ALL_STATUS)],
+        note "Firmware 4.2.8 does not answer it.";
+    MANUAL_ADVANCED READ_TEMPERATURE_1 "read temperature 1" reads![celsius(name::TEMPERATURE_1)];
+    MANUAL_ADVANCED READ_TEMPERATURE_2 "read temperature 2" reads![celsius(name::TEMPERATURE_2)],
+        note "Only on units with a second sensor.";
+    MANUAL_ADVANCED READ_STATUS "read status" STATUS,
+        note "The bits mean different things in two bytes and in four; see the table of status bits.";
+};
 
 const STATUS: &[Form] = forms![
     read(G1, G2, fields![field(name::STATUS, Kind::U16, "state of the unit").unit(Unit::Status)]),
@@ -73,8 +61,4 @@ const fn buffer(name: impl Name) -> Field {
 /// Clients differ in the sign; read as signed.
 const fn error(name: impl Name, unit: Unit) -> Field {
     field(name, Kind::I16, "how far the motor is from its setpoint").unit(unit)
-}
-
-const fn manual(number: u8, title: &'static str, forms: &'static [Form]) -> Command {
-    Command::new(number, title, MANUAL_ADVANCED, forms)
 }
