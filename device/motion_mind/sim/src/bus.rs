@@ -25,11 +25,6 @@ impl MotionMindBus {
         &self.units
     }
 
-    /// The units, to do something to them.
-    pub fn motion_minds_mut(&mut self) -> &mut [MotionMind] {
-        &mut self.units
-    }
-
     /// Sends bytes now and gives back what has come within `timeout`, as soon as the first reply is there: a client that waits.
     pub fn exchange(&mut self, bytes: &[u8], timeout: Duration) -> Vec<u8> {
         let deadline = self.now() + timeout;

@@ -71,11 +71,6 @@ impl Bus {
         }
     }
 
-    /// Whether the wire is a CAN bus behind an adapter.
-    pub fn is_can(&self) -> bool {
-        self.can.is_some()
-    }
-
     /// The stream the wire is on.
     pub fn stream(&self) -> StreamIndex {
         self.stream
@@ -164,7 +159,8 @@ impl Machine for Bus {
 
     fn apply(&mut self, unit: usize, action: &WorldAction) {
         if let Some(unit) = self.units.get_mut(unit) {
-            Machine::apply(unit, 0, action);
+            // The trait has no word for a hidden setting that is not there; `Controller::apply` has.
+            let _ = unit.apply(action);
         }
         let now = self.now();
         let plugged = self.plugged();
@@ -181,7 +177,7 @@ impl Machine for Bus {
     }
 
     fn plugged(&self) -> bool {
-        self.units.iter().any(Controller::plugged)
+        self.units.iter().any(|unit| unit.world().plugged())
     }
 
     fn wants_real_time(&self) -> bool {

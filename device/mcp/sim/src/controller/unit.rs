@@ -13,7 +13,7 @@ use crate::settings::{Eeprom, Settings, UnknownKey};
 use brushwork_mcp_wire::packet_serial::{ACK, Framed, encode_reply, encode_reply_named};
 use brushwork_plant::ParamsError;
 use brushwork_plant::bridge::BridgeOutput;
-use brushwork_plant::machine::{Machine, StreamIndex};
+use brushwork_plant::machine::StreamIndex;
 use brushwork_plant::world::{World, WorldAction, WorldParams, WorldView};
 use brushwork_script::debug::{Debugger, StopCause};
 use std::time::Duration;
@@ -160,6 +160,14 @@ impl Controller {
         match &self.firmware {
             Some(firmware) => firmware.settings.clone(),
             None => self.memory.load(self.config.model, self.config.address),
+        }
+    }
+
+    /// The rate a stream is set to.
+    pub fn bits_per_second(&self, stream: StreamIndex) -> u32 {
+        match &self.firmware {
+            Some(firmware) => firmware.settings.streams[stream.index()].rate_bps,
+            None => self.settings().streams[stream.index()].rate_bps,
         }
     }
 
@@ -317,57 +325,5 @@ impl Controller {
         if !bytes.is_empty() {
             self.ports[stream.index()].send(bytes, due);
         }
-    }
-}
-
-impl Machine for Controller {
-    fn now(&self) -> Duration {
-        self.now
-    }
-
-    fn receive(&mut self, stream: StreamIndex, bytes: &[u8]) {
-        Controller::receive(self, stream, bytes);
-    }
-
-    fn advance(&mut self, to: Duration) {
-        Controller::advance(self, to);
-    }
-
-    fn next_output_at(&self) -> Option<Duration> {
-        Controller::next_output_at(self)
-    }
-
-    fn take_output(&mut self, stream: StreamIndex) -> Option<Vec<u8>> {
-        Controller::take_output(self, stream)
-    }
-
-    fn bits_per_second(&self, stream: StreamIndex) -> u32 {
-        match &self.firmware {
-            Some(firmware) => firmware.settings.streams[stream.index()].rate_bps,
-            None => self.settings().streams[stream.index()].rate_bps,
-        }
-    }
-
-    fn units(&self) -> usize {
-        1
-    }
-
-    fn apply(&mut self, unit: usize, action: &WorldAction) {
-        if unit == 0 {
-            // The trait has no word for a hidden setting that is not there; `Controller::apply` has.
-            let _ = Controller::apply(self, action);
-        }
-    }
-
-    fn views(&self) -> Vec<WorldView> {
-        vec![self.view()]
-    }
-
-    fn plugged(&self) -> bool {
-        self.world.plugged()
-    }
-
-    fn wants_real_time(&self) -> bool {
-        self.has_something_to_see()
     }
 }
