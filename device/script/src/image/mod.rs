@@ -33,6 +33,7 @@ pub use error::{ImageError, VERSION};
 
 use crate::program::{Program, Variable, limits};
 use bytes::{Reader, Writer};
+use code::Operand;
 
 /// The first bytes of every image.
 pub const MAGIC: [u8; 8] = *b"BWMCLIMG";
@@ -93,7 +94,7 @@ pub fn encode(program: &Program) -> Vec<u8> {
     writer.count(program.variables.len());
     for variable in &program.variables {
         writer.name(&variable.name);
-        code::write_array(&mut writer, variable.memory);
+        variable.memory.write(&mut writer);
         writer.byte(variable.is_array.into());
     }
     writer.count(program.labels.len());
@@ -153,7 +154,7 @@ fn read(reader: &mut Reader<'_>) -> Result<Program, ImageError> {
 }
 
 fn read_variable(reader: &mut Reader<'_>) -> Result<Variable, ImageError> {
-    Ok(Variable { name: reader.name()?, memory: code::read_array(reader)?, is_array: reader.flag()? })
+    Ok(Variable { name: reader.name()?, memory: Operand::read(reader)?, is_array: reader.flag()? })
 }
 
 fn write_lines(writer: &mut Writer, lines: &[u32]) {
