@@ -19,136 +19,86 @@ pub struct Word {
     pub help: &'static str,
 }
 
-const fn word(name: &'static str, syntax: &'static str, help: &'static str) -> Word {
-    Word { name, syntax, help }
+/// Rows of words: the word, how the statement is written and what it does.
+macro_rules! words {
+    ($($name:literal $syntax:literal $help:literal;)*) => {
+        [$(Word { name: $name, syntax: $syntax, help: $help }),*]
+    };
 }
 
 /// Statements (MCP manual 3.4.1).
-pub const COMMANDS: [Word; 44] = [
-    word(
-        "BRANCH",
-        "branch index, [label0, label1, ...]",
-        "Jumps to the label that index names, counted from 0; goes on with the next line if there is none.",
-    ),
-    word("CLEAR", "clear", "Sets all variables to zero."),
-    word(
-        "DIST",
-        "dist motor, speed, accel, distance, buffer",
-        "Moves a motor a distance at a speed (counts/s). Buffer 0 waits for its turn, 1 begins at once.",
-    ),
-    word(
-        "DIST2",
-        "dist2 speed1, accel1, distance1, speed2, accel2, distance2, buffer",
-        "Moves both motors a distance each.",
-    ),
-    word("DO", "do ... while condition", "Repeats as long as the condition holds; runs at least once."),
-    word("ELSE", "if condition then ... else ... endif", "What to do when no condition of the IF held."),
-    word(
-        "ELSEIF",
-        "if condition then ... elseif condition ... endif",
-        "Another condition, tried when those before did not hold.",
-    ),
-    word("END", "end", "Ends the program until the next start."),
-    word("ENDIF", "if condition then ... endif", "Closes an IF."),
-    word(
-        "FOR",
-        "for variable = start to finish {step increment} ... next",
-        "Counts a variable from start to finish.",
-    ),
-    word("GETS", "gets stream, [variable, ...]", "Waits for bytes of a stream and stores them."),
-    word("GOSUB", "gosub label{[argument, ...]}{, result}", "Calls a subroutine, which ends with RETURN."),
-    word("GOTO", "goto label", "Goes on at a label."),
-    word(
-        "I2CIN",
-        "i2cin {label, timeout}, [variable, ...]",
-        "Reads bytes of an I2C device; jumps to the label if one takes longer than timeout (ms).",
-    ),
-    word("I2COUT", "i2cout {label, timeout}, [byte, ...]", "Sends bytes to an I2C device, then a stop."),
-    word(
-        "I2COUTNS",
-        "i2coutns {label, timeout}, [byte, ...]",
-        "Sends bytes to an I2C device without a stop, so that a repeated start can follow.",
-    ),
-    word(
-        "IF",
-        "if condition then label   or   if condition then ... endif",
-        "Does something only when a condition holds.",
-    ),
-    word("LET", "{let} variable = expression", "Stores a value; arrays take several, and texts."),
-    word(
-        "MOVE",
-        "move motor, speed, accel, deccel, position, buffer",
-        "Moves a motor to a position (counts).",
-    ),
-    word(
-        "MOVE2",
-        "move2 speed1, accel1, deccel1, position1, speed2, accel2, deccel2, position2, buffer",
-        "Moves both motors to a position each.",
-    ),
-    word("NEXT", "for ... next", "Closes a FOR."),
-    word("PAUSE", "pause time", "Waits for time in milliseconds."),
-    word("POWER", "power motor, duty, accel", "Runs a motor at a duty (full is 32767) without a loop."),
-    word("POWER2", "power2 duty1, accel1, duty2, accel2", "Runs both motors at a duty each."),
-    word("PUTS", "puts stream, [data, ...]", "Sends data to a stream: 0 USB, 1 CAN, 2 TTL, 3 RS-232."),
-    word("READ", "read address, variable", "Reads a byte of the user EEPROM."),
-    word("REPEAT", "repeat ... until condition", "Repeats until the condition holds; runs at least once."),
-    word("RETURN", "return {expression}", "Ends a subroutine, with a value if one is given."),
-    word("SPEED", "speed motor, speed, accel", "Runs a motor at a speed (counts/s)."),
-    word("SPEED2", "speed2 speed1, accel1, speed2, accel2", "Runs both motors at a speed each."),
-    word("STEP", "for variable = start to finish step increment", "By how much FOR counts."),
-    word("STOP", "stop", "The same as END."),
-    word("THEN", "if condition then ...", "What to do when the condition holds."),
-    word("TO", "for variable = start to finish", "Where FOR ends."),
-    word("UNTIL", "repeat ... until condition", "Closes a REPEAT."),
-    word("WEND", "while condition ... wend", "Closes a WHILE."),
-    word(
-        "WHILE",
-        "while condition ... wend   or   do ... while condition",
-        "Repeats as long as the condition holds.",
-    ),
-    word("WRITE", "write address, value", "Writes a byte of the user EEPROM."),
-    word(
-        "VAR",
-        "name VAR type{(size)}   or   name VAR variable{.modifier}",
-        "Defines a variable, an array or another name for one.",
-    ),
-    word("CON", "name CON value", "Defines a constant."),
-    word("FCON", "name FCON value", "Defines a floating point constant."),
-    word(
-        "BYTETABLE",
-        "name ByteTable value, ...",
-        "Defines a table of constants: ByteTable, SByteTable, WordTable, SWordTable, LongTable, SLongTable, FloatTable.",
-    ),
-    word(
-        "#IF",
-        "#IF expression ... #ELSEIF expression ... #ELSE ... #ENDIF",
-        "Compiles a part only when an expression of constants holds.",
-    ),
-    word(
-        "#IFDEF",
-        "#IFDEF name ... #ENDIF   (also #IFNDEF, #ELSEIFDEF, #ELSEIFNDEF)",
-        "Compiles a part only when a name is defined above.",
-    ),
-];
+pub const COMMANDS: [Word; 44] = words! {
+    "BRANCH" "branch index, [label0, label1, ...]"
+        "Jumps to the label that index names, counted from 0; goes on with the next line if there is none.";
+    "CLEAR" "clear" "Sets all variables to zero.";
+    "DIST" "dist motor, speed, accel, distance, buffer"
+        "Moves a motor a distance at a speed (counts/s). Buffer 0 waits for its turn, 1 begins at once.";
+    "DIST2" "dist2 speed1, accel1, distance1, speed2, accel2, distance2, buffer"
+        "Moves both motors a distance each.";
+    "DO" "do ... while condition" "Repeats as long as the condition holds; runs at least once.";
+    "ELSE" "if condition then ... else ... endif" "What to do when no condition of the IF held.";
+    "ELSEIF" "if condition then ... elseif condition ... endif"
+        "Another condition, tried when those before did not hold.";
+    "END" "end" "Ends the program until the next start.";
+    "ENDIF" "if condition then ... endif" "Closes an IF.";
+    "FOR" "for variable = start to finish {step increment} ... next"
+        "Counts a variable from start to finish.";
+    "GETS" "gets stream, [variable, ...]" "Waits for bytes of a stream and stores them.";
+    "GOSUB" "gosub label{[argument, ...]}{, result}" "Calls a subroutine, which ends with RETURN.";
+    "GOTO" "goto label" "Goes on at a label.";
+    "I2CIN" "i2cin {label, timeout}, [variable, ...]"
+        "Reads bytes of an I2C device; jumps to the label if one takes longer than timeout (ms).";
+    "I2COUT" "i2cout {label, timeout}, [byte, ...]" "Sends bytes to an I2C device, then a stop.";
+    "I2COUTNS" "i2coutns {label, timeout}, [byte, ...]"
+        "Sends bytes to an I2C device without a stop, so that a repeated start can follow.";
+    "IF" "if condition then label   or   if condition then ... endif"
+        "Does something only when a condition holds.";
+    "LET" "{let} variable = expression" "Stores a value; arrays take several, and texts.";
+    "MOVE" "move motor, speed, accel, deccel, position, buffer" "Moves a motor to a position (counts).";
+    "MOVE2" "move2 speed1, accel1, deccel1, position1, speed2, accel2, deccel2, position2, buffer"
+        "Moves both motors to a position each.";
+    "NEXT" "for ... next" "Closes a FOR.";
+    "PAUSE" "pause time" "Waits for time in milliseconds.";
+    "POWER" "power motor, duty, accel" "Runs a motor at a duty (full is 32767) without a loop.";
+    "POWER2" "power2 duty1, accel1, duty2, accel2" "Runs both motors at a duty each.";
+    "PUTS" "puts stream, [data, ...]" "Sends data to a stream: 0 USB, 1 CAN, 2 TTL, 3 RS-232.";
+    "READ" "read address, variable" "Reads a byte of the user EEPROM.";
+    "REPEAT" "repeat ... until condition" "Repeats until the condition holds; runs at least once.";
+    "RETURN" "return {expression}" "Ends a subroutine, with a value if one is given.";
+    "SPEED" "speed motor, speed, accel" "Runs a motor at a speed (counts/s).";
+    "SPEED2" "speed2 speed1, accel1, speed2, accel2" "Runs both motors at a speed each.";
+    "STEP" "for variable = start to finish step increment" "By how much FOR counts.";
+    "STOP" "stop" "The same as END.";
+    "THEN" "if condition then ..." "What to do when the condition holds.";
+    "TO" "for variable = start to finish" "Where FOR ends.";
+    "UNTIL" "repeat ... until condition" "Closes a REPEAT.";
+    "WEND" "while condition ... wend" "Closes a WHILE.";
+    "WHILE" "while condition ... wend   or   do ... while condition"
+        "Repeats as long as the condition holds.";
+    "WRITE" "write address, value" "Writes a byte of the user EEPROM.";
+    "VAR" "name VAR type{(size)}   or   name VAR variable{.modifier}"
+        "Defines a variable, an array or another name for one.";
+    "CON" "name CON value" "Defines a constant.";
+    "FCON" "name FCON value" "Defines a floating point constant.";
+    "BYTETABLE" "name ByteTable value, ..."
+        "Defines a table of constants: ByteTable, SByteTable, WordTable, SWordTable, LongTable, SLongTable, FloatTable.";
+    "#IF" "#IF expression ... #ELSEIF expression ... #ELSE ... #ENDIF"
+        "Compiles a part only when an expression of constants holds.";
+    "#IFDEF" "#IFDEF name ... #ENDIF   (also #IFNDEF, #ELSEIFDEF, #ELSEIFNDEF)"
+        "Compiles a part only when a name is defined above.";
+};
 
 /// Output and input modifiers (MCP manual 3.3).
-pub const FORMATS: [Word; 7] = [
-    word("DEC", "DEC{max} x{\\min}", "Decimal digits: at most max, with zeros to at least min."),
-    word("SDEC", "SDEC{max} x{\\min}", "Decimal digits with a minus sign."),
-    word("HEX", "HEX{max} x{\\min}", "Hexadecimal digits."),
-    word("IHEX", "IHEX{max} x{\\min}", "Hexadecimal digits after a $."),
-    word("REP", "REP character\\count", "A character several times."),
-    word(
-        "REAL",
-        "REAL{max} x{\\decimals}",
-        "A number with a decimal point: at most max digits before and decimals after it.",
-    ),
-    word(
-        "STR",
-        "STR array\\length{\\end}",
-        "Characters of an array: at most length, up to the character end.",
-    ),
-];
+pub const FORMATS: [Word; 7] = words! {
+    "DEC" "DEC{max} x{\\min}" "Decimal digits: at most max, with zeros to at least min.";
+    "SDEC" "SDEC{max} x{\\min}" "Decimal digits with a minus sign.";
+    "HEX" "HEX{max} x{\\min}" "Hexadecimal digits.";
+    "IHEX" "IHEX{max} x{\\min}" "Hexadecimal digits after a $.";
+    "REP" "REP character\\count" "A character several times.";
+    "REAL" "REAL{max} x{\\decimals}"
+        "A number with a decimal point: at most max digits before and decimals after it.";
+    "STR" "STR array\\length{\\end}" "Characters of an array: at most length, up to the character end.";
+};
 
 /// CAN words that controllers have and whose syntax is not public (public clients and forums, 2015-2025).
 pub const CAN: [&str; 7] = ["CANIN", "CANOUT", "CANCOBID", "CANRTR", "CANLEN", "CANDATA", "CANESR"];
