@@ -59,7 +59,7 @@ impl BreakpointState {
     }
 
     /// The script is about to run its line.
-    pub(super) fn reached<H: Host + ?Sized>(&mut self, machine: &mut Machine, host: &mut H) -> Verdict {
+    pub(super) fn reached(&mut self, machine: &mut Machine, host: &mut dyn Host) -> Verdict {
         let line = self.line.unwrap_or(self.wanted.line);
         let condition = self.wanted.condition.as_ref();
         match condition.map_or(Ok(true), |condition| condition.holds(machine, host)) {

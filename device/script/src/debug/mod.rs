@@ -107,12 +107,7 @@ pub struct Debugger {
 
 impl Debugger {
     /// Runs at most `budget` instructions and says how far the machine is, as [`Machine::run`] does; none while the script is paused.
-    pub fn run<'m, H: Host + ?Sized>(
-        &mut self,
-        machine: &'m mut Machine,
-        host: &mut H,
-        budget: u32,
-    ) -> &'m State {
+    pub fn run<'m, H: Host>(&mut self, machine: &'m mut Machine, host: &mut H, budget: u32) -> &'m State {
         if !self.attached {
             return machine.run(host, budget);
         }
@@ -182,7 +177,7 @@ impl Debugger {
 
     /// Does what was asked for; without a machine what concerns one is passed by.
     #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
-    pub fn ask<H: Host + ?Sized>(&mut self, request: Request, machine: Option<&mut Machine>, host: &mut H) {
+    pub fn ask(&mut self, request: Request, machine: Option<&mut Machine>, host: &mut dyn Host) {
         match request {
             Request::Set { id, setting } => self.answer = Some((id, self.set(&setting, machine, host))),
             other => self.ask_alone(other, machine.as_deref()),
@@ -271,11 +266,11 @@ impl Debugger {
         self.reason = reason;
     }
 
-    fn set<H: Host + ?Sized>(
+    fn set(
         &mut self,
         setting: &Setting,
         machine: Option<&mut Machine>,
-        host: &mut H,
+        host: &mut dyn Host,
     ) -> Result<String, String> {
         let machine = machine.ok_or_else(|| "There is no script: download and start one.".to_owned())?;
         if !self.paused && !is_over(machine.state()) {
@@ -294,7 +289,7 @@ impl Debugger {
     }
 
     /// Whether the script is to stand where it is.
-    fn stops_before<H: Host + ?Sized>(&mut self, machine: &mut Machine, host: &mut H) -> bool {
+    fn stops_before(&mut self, machine: &mut Machine, host: &mut dyn Host) -> bool {
         let can_go_on = match machine.state() {
             State::Ready => true,
             State::Pausing { until } => host.now() >= *until,
@@ -311,12 +306,7 @@ impl Debugger {
     }
 
     /// What the breakpoint on a line says.
-    fn verdict<H: Host + ?Sized>(
-        &mut self,
-        line: u32,
-        machine: &mut Machine,
-        host: &mut H,
-    ) -> Option<Reason> {
+    fn verdict(&mut self, line: u32, machine: &mut Machine, host: &mut dyn Host) -> Option<Reason> {
         let breakpoint = self.breakpoints.iter_mut().find(|breakpoint| breakpoint.is_on(line))?;
         match breakpoint.reached(machine, host) {
             Verdict::GoOn => None,
@@ -342,7 +332,7 @@ impl Debugger {
     }
 
     /// Runs one instruction. False if the machine can run no further in this call.
-    fn step<H: Host + ?Sized>(&mut self, machine: &mut Machine, host: &mut H) -> bool {
+    fn step(&mut self, machine: &mut Machine, host: &mut dyn Host) -> bool {
         let (at, depth, executed) = (machine.at(), machine.calls().len(), machine.executed());
         let waited = matches!(machine.state(), State::Listening { .. });
         machine.run(&mut Tapped { host, terminal: &mut self.terminal }, 1);

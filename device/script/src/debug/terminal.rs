@@ -80,12 +80,12 @@ impl Terminal {
 }
 
 /// A host whose streams are listened to.
-pub(super) struct Tapped<'a, H: Host + ?Sized> {
-    pub host: &'a mut H,
+pub(super) struct Tapped<'a> {
+    pub host: &'a mut dyn Host,
     pub terminal: &'a mut Terminal,
 }
 
-impl<H: Host + ?Sized> Host for Tapped<'_, H> {
+impl Host for Tapped<'_> {
     fn now(&self) -> Duration {
         self.host.now()
     }

@@ -14,12 +14,7 @@ use crate::vm::{Host, Machine};
 
 impl Debugger {
     /// The script as it is now.
-    pub fn view<H: Host + ?Sized>(
-        &mut self,
-        machine: Option<&mut Machine>,
-        host: &mut H,
-        wanted: &Wanted,
-    ) -> View {
+    pub fn view(&mut self, machine: Option<&mut Machine>, host: &mut dyn Host, wanted: &Wanted) -> View {
         let mut view = View {
             now: host.now(),
             reason: self.reason.clone(),
@@ -71,10 +66,10 @@ impl Debugger {
     }
 }
 
-fn worked_out<H: Host + ?Sized>(
+fn worked_out(
     watch: &Result<Watch, String>,
     machine: &mut Machine,
-    host: &mut H,
+    host: &mut dyn Host,
 ) -> Result<Value, String> {
     match watch {
         Ok(watch) => watch.value(machine, host),

@@ -39,7 +39,7 @@ impl Watch {
     ///
     /// # Errors
     /// A sentence: an index outside, a division by zero.
-    pub fn value<H: Host + ?Sized>(&self, machine: &mut Machine, host: &mut H) -> Result<Value, String> {
+    pub fn value(&self, machine: &mut Machine, host: &mut dyn Host) -> Result<Value, String> {
         if let Some(array) = self.array {
             let cells = (0..array.length).filter_map(|index| element(array, index));
             let values = cells.map(|cell| machine.memory().load(cell)).collect();
@@ -54,7 +54,7 @@ impl Watch {
     /// # Errors
     /// As for [`Watch::value`].
     #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
-    pub fn holds<H: Host + ?Sized>(&self, machine: &mut Machine, host: &mut H) -> Result<bool, String> {
+    pub fn holds(&self, machine: &mut Machine, host: &mut dyn Host) -> Result<bool, String> {
         let value = self.value(machine, host)?;
         Ok(value.cells.iter().any(|cell| match value.kind {
             VarType::Float => f32::from_bits(*cell) != 0.0,
@@ -68,7 +68,7 @@ impl Setting {
     ///
     /// # Errors
     /// A sentence: the value does not fit, or an index is outside; nothing is changed then.
-    pub fn set<H: Host + ?Sized>(&self, machine: &mut Machine, host: &mut H) -> Result<Value, String> {
+    pub fn set(&self, machine: &mut Machine, host: &mut dyn Host) -> Result<Value, String> {
         if self.value.array.is_some() {
             return Err(format!("`{}` is an array and no single value.", self.value.text));
         }
@@ -107,10 +107,10 @@ impl Setting {
 }
 
 /// Runs the few instructions of an expression on the memory of a machine; what is on the stack at the end is its value.
-fn evaluate<H: Host + ?Sized>(
+fn evaluate(
     program: &Arc<Program>,
     machine: &mut Machine,
-    host: &mut H,
+    host: &mut dyn Host,
     first: Option<u32>,
 ) -> Result<u32, String> {
     let mut scratch = Machine::new(program.clone());
