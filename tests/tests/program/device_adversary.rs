@@ -3,10 +3,10 @@
 
 use std::time::Duration;
 
+use brushwork_link::Stream;
 use brushwork_link::device::{
     ArmScope, DeviceHandle, DeviceOptions, DisarmReason, Drive, DriveCommand, Event, Job, PollRate, Request,
 };
-use brushwork_link::{Stream, Wire};
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_mcp_wire::packet_serial::{Address, Generation, number};
 use brushwork_plant::machine::StreamIndex;

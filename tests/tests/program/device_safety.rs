@@ -3,13 +3,13 @@
 
 use std::time::Duration;
 
+use brushwork_link::Interruption;
 use brushwork_link::Stream;
 use brushwork_link::device::{
     ArmScope, DeviceHandle, DeviceOptions, DisarmReason, Drive, DriveCommand, Event, Job, JobEnding,
     PollRate, Request,
 };
 use brushwork_link::settings::read_all;
-use brushwork_link::{Interruption, Wire};
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::packet_serial::{Address, Generation, Request as Packet, number};

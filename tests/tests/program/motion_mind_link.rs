@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use brushwork_link::Failure;
 use brushwork_link::FamilyChoice;
 use brushwork_link::device::{
     Addresses, ArmScope, Channel, DeviceOptions, DisarmReason, Drive, DriveCommand, Event, Identity, Job,
@@ -14,7 +15,6 @@ use brushwork_link::settings::{
     SaveVerdict, SettingValue, SettingsImage, SettingsTable, WriteOptions, read_all, reload,
     restore_defaults, save_eeprom, write,
 };
-use brushwork_link::{Failure, Wire};
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_motion_mind_sim::{MotionMind, MotionMindBus, MotionMindConfig};
 use brushwork_motion_mind_wire::{
