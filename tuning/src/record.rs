@@ -45,13 +45,19 @@ pub enum Entry<L: Law> {
 /// Writes down what passes between a tuner and an axis.
 pub struct Recorder<'a, L: Law> {
     axis: &'a mut dyn LoopAxis<L>,
+    look: &'a mut dyn FnMut(&Entry<L>),
     entries: Vec<Entry<L>>,
 }
 
 impl<'a, L: Law> Recorder<'a, L> {
-    /// Listens to `axis`.
-    pub fn new(axis: &'a mut dyn LoopAxis<L>) -> Self {
-        Self { axis, entries: Vec::new() }
+    /// Listens to `axis`, and shows each entry to `look`.
+    pub fn new(axis: &'a mut dyn LoopAxis<L>, look: &'a mut dyn FnMut(&Entry<L>)) -> Self {
+        Self { axis, look, entries: Vec::new() }
+    }
+
+    fn note(&mut self, entry: Entry<L>) {
+        (self.look)(&entry);
+        self.entries.push(entry);
     }
 
     /// What passed so far.
@@ -64,67 +70,67 @@ impl<'a, L: Law> Recorder<'a, L> {
 impl<L: Law> Axis for Recorder<'_, L> {
     fn now(&mut self) -> Duration {
         let now = self.axis.now();
-        self.entries.push(Entry::Now(now));
+        self.note(Entry::Now(now));
         now
     }
 
     fn wait_until(&mut self, time: Duration) -> Result<(), AxisError> {
         let answer = self.axis.wait_until(time);
-        self.entries.push(Entry::Waited(answer.clone()));
+        self.note(Entry::Waited(answer.clone()));
         answer
     }
 
     fn sample(&mut self, want: Want) -> Result<Sample, AxisError> {
         let answer = self.axis.sample(want);
-        self.entries.push(Entry::Sampled(answer.clone()));
+        self.note(Entry::Sampled(answer.clone()));
         answer
     }
 
     fn drive_duty(&mut self, duty_raw: i16) -> Result<Exchange, AxisError> {
         let answer = self.axis.drive_duty(duty_raw);
-        self.entries.push(Entry::Duty(duty_raw, answer.clone()));
+        self.note(Entry::Duty(duty_raw, answer.clone()));
         answer
     }
 
     fn command_speed(&mut self, counts_per_s: i32) -> Result<Exchange, AxisError> {
         let answer = self.axis.command_speed(counts_per_s);
-        self.entries.push(Entry::Speed(counts_per_s, answer.clone()));
+        self.note(Entry::Speed(counts_per_s, answer.clone()));
         answer
     }
 
     fn command_position(&mut self, counts: i32, speed: u32) -> Result<Exchange, AxisError> {
         let answer = self.axis.command_position(counts, speed);
-        self.entries.push(Entry::Position(counts, speed, answer.clone()));
+        self.note(Entry::Position(counts, speed, answer.clone()));
         answer
     }
 
     fn write_winding(&mut self, raw: [u32; 2]) -> Result<(), AxisError> {
         let answer = self.axis.write_winding(raw);
-        self.entries.push(Entry::Winding(raw, answer.clone()));
+        self.note(Entry::Winding(raw, answer.clone()));
         answer
     }
 
     fn write_current_limits(&mut self, max_raw: u32, min_raw: i32) -> Result<(), AxisError> {
         let answer = self.axis.write_current_limits(max_raw, min_raw);
-        self.entries.push(Entry::CurrentLimits(max_raw, min_raw, answer.clone()));
+        self.note(Entry::CurrentLimits(max_raw, min_raw, answer.clone()));
         answer
     }
 
     fn raw_speed(&mut self) -> Result<i32, AxisError> {
         let answer = self.axis.raw_speed();
-        self.entries.push(Entry::RawSpeed(answer.clone()));
+        self.note(Entry::RawSpeed(answer.clone()));
         answer
     }
 
     fn set_stream_timeout(&mut self, milliseconds: u32) -> Result<(), AxisError> {
         let answer = self.axis.set_stream_timeout(milliseconds);
-        self.entries.push(Entry::Timeout(milliseconds, answer.clone()));
+        self.note(Entry::Timeout(milliseconds, answer.clone()));
         answer
     }
 
     fn set_travel(&mut self, counts: (i64, i64)) -> Result<(), AxisError> {
         let answer = self.axis.set_travel(counts);
-        self.entries.push(Entry::Travel(counts, answer.clone()));
+        self.note(Entry::Travel(counts, answer.clone()));
         answer
     }
 
@@ -136,13 +142,13 @@ impl<L: Law> Axis for Recorder<'_, L> {
 impl<L: Law> LoopAxis<L> for Recorder<'_, L> {
     fn read_setup(&mut self) -> Result<Setup<L>, AxisError> {
         let answer = self.axis.read_setup();
-        self.entries.push(Entry::Setup(answer.clone()));
+        self.note(Entry::Setup(answer.clone()));
         answer
     }
 
     fn write(&mut self, write: L::Write) -> Result<(), AxisError> {
         let answer = self.axis.write(write);
-        self.entries.push(Entry::Registers(L::note(write, answer.clone())));
+        self.note(Entry::Registers(L::note(write, answer.clone())));
         answer
     }
 }

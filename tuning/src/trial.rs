@@ -63,8 +63,12 @@ pub fn on_model<L: Law>(task: &Task<L>, registers: &L::Registers, method: Method
 }
 
 /// Runs it. The motor stands and the gains from before are in force when it returns.
-pub fn run_trial<L: Law>(axis: &mut dyn LoopAxis<L>, wanted: &TrialRequest<L>) -> Trial<L> {
-    let mut recorder = Recorder::new(axis);
+pub fn run_trial<L: Law>(
+    axis: &mut dyn LoopAxis<L>,
+    wanted: &TrialRequest<L>,
+    look: &mut dyn FnMut(&Entry<L>),
+) -> Trial<L> {
+    let mut recorder = Recorder::new(axis, look);
     let mut trial = Trial { cause: None, measured: None, seconds: 0.0, record: Vec::new() };
     match ExperimentGuard::new(&mut recorder, wanted.request.guard) {
         Err(cause) => trial.cause = Some(cause),

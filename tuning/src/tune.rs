@@ -13,7 +13,7 @@ use crate::law_probe::LawProbe;
 use crate::model::{Lag, PlantModel};
 use crate::open_loop_record::OpenLoopRecord;
 pub use crate::proposal::{design_for, propose};
-use crate::record::Recorder;
+use crate::record::{Entry, Recorder};
 use crate::report::{FORMAT, Report, Verdict};
 pub use crate::request::{Excitation, Method, Request};
 use crate::rules::Classic;
@@ -47,7 +47,16 @@ const WIDEST_LAG_S: f64 = 0.012;
 
 /// Runs it. The motor stands and the old gains are in force when it returns, unless the request keeps the new ones.
 pub fn tune<L: LawProbe>(axis: &mut dyn LoopAxis<L>, request: &Request<L>) -> Report<L> {
-    let mut recorder = Recorder::new(axis);
+    tune_watched(axis, request, &mut |_| {})
+}
+
+/// The same, showing `look` what passes between tuner and axis while it goes on.
+pub fn tune_watched<L: LawProbe>(
+    axis: &mut dyn LoopAxis<L>,
+    request: &Request<L>,
+    look: &mut dyn FnMut(&Entry<L>),
+) -> Report<L> {
+    let mut recorder = Recorder::new(axis, look);
     let mut report = blank(request);
     let outcome = match ExperimentGuard::new(&mut recorder, request.guard) {
         Err(cause) => Err(cause),

@@ -8,16 +8,14 @@ use brushwork_canopen::adapter::Form;
 use brushwork_link::FamilyChoice;
 use brushwork_plant::faults::FAULT_SYNTAX;
 use brushwork_plant::machine::StreamIndex;
-use brushwork_values::Motor;
+use brushwork_values::{Motor, parse_byte};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use super::exit;
 use super::family::families;
 use super::monitor::args::MonitorArgs;
-use super::new_file::Replace;
 use super::settings::args::SettingsArgs;
-use super::shared_args::{ConnectArgs, LineArgs, ScriptBuses, parse_seconds};
-use brushwork_values::parse_byte;
+use super::shared_args::{LineArgs, ScriptBuses};
+use super::{ConnectArgs, Replace, exit, parse_seconds};
 
 /// Configures, drives and tunes brushed-DC motor controllers.
 #[derive(Debug, Parser)]

@@ -4,18 +4,15 @@ use std::fmt::Display;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use brushwork_link::device::{
-    Addresses, ArmScope, DeviceHandle, Event, Identity, Job, JobTicket, PollRate, Request,
+use brushwork_link::{
+    Addresses, ArmScope, ConnectTarget, DeviceHandle, Event, Failure, FamilyChoice, Identity, Job, JobTicket,
+    PollRate, Request, Stream, SystemClock, families,
 };
-use brushwork_link::transport::{ConnectTarget, Stream};
-use brushwork_link::{Failure, FamilyChoice, SystemClock, families};
 use crossbeam_channel::RecvTimeoutError;
 
-use super::exit::Exit;
-use super::family::{self, Family};
-use super::interrupt::Interrupt;
-use super::output::say;
-use super::shared_args::{ConnectArgs, LineArgs};
+use super::family;
+use super::shared_args::LineArgs;
+use super::{ConnectArgs, Exit, Family, Interrupt, say};
 use brushwork_core::session::{self, Session, SessionOptions, Simulation};
 
 /// How long a controller may take to be found and identified.

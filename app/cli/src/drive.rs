@@ -4,21 +4,15 @@
 
 use std::time::{Duration, Instant};
 
-use brushwork_link::device::{
-    ArmScope, DisarmReason, Drive, DriveCommand, Event, Identity, PollRate, Request,
-};
+use brushwork_link::device::DisarmReason;
+use brushwork_link::{ArmScope, Drive, DriveCommand, Event, Identity, PollRate, Request};
 use serde_json::json;
 
 use super::args::DriveArgs;
-use super::client::{Client, arm, ask};
-use super::exit::Exit;
-use super::family;
-use super::interrupt::Interrupt;
-use super::output::{Output, OutputError, say};
-use super::readings::Readings;
+use super::client::{arm, ask};
 use super::response::Response;
 use super::status::line_of;
-use super::stop;
+use super::{Client, Exit, Interrupt, Output, OutputError, Readings, family, say, stop};
 
 /// Time between two sweeps of the signals.
 const SWEEP_INTERVAL: Duration = Duration::from_millis(20);

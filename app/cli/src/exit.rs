@@ -24,27 +24,27 @@ pub const HELP: &str = "Exit codes:\n  \
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Exit {
     /// All was done.
-    Done,
+    Done = 0,
     /// A failure of no other kind.
-    Failed,
+    Failed = 1,
     /// An argument makes no sense; clap finds most of them itself, with the same code.
-    Usage,
+    Usage = 2,
     /// No controller was reached, or the link was lost.
-    NoLink,
+    NoLink = 3,
     /// The controller or a safety rule refused.
-    Refused,
+    Refused = 4,
     /// A setting's value or a profile was refused, or did not take.
-    NotTaken,
+    NotTaken = 5,
     /// `settings diff` found differences.
-    Different,
+    Different = 6,
     /// The tuner found gains, with something to know about them.
-    TunedWithWarnings,
+    TunedWithWarnings = 8,
     /// A script has errors.
-    ScriptWrong,
+    ScriptWrong = 9,
     /// A script was stopped by a fault.
-    ScriptFaulted,
+    ScriptFaulted = 10,
     /// A signal or a closed pipe ended the command, with the motors stopped.
-    Interrupted,
+    Interrupted = 130,
 }
 
 impl Exit {
@@ -67,18 +67,6 @@ impl From<OutputError> for Exit {
 
 impl From<Exit> for ExitCode {
     fn from(exit: Exit) -> Self {
-        Self::from(match exit {
-            Exit::Done => 0,
-            Exit::Failed => 1,
-            Exit::Usage => 2,
-            Exit::NoLink => 3,
-            Exit::Refused => 4,
-            Exit::NotTaken => 5,
-            Exit::Different => 6,
-            Exit::TunedWithWarnings => 8,
-            Exit::ScriptWrong => 9,
-            Exit::ScriptFaulted => 10,
-            Exit::Interrupted => 130,
-        })
+        Self::from(exit as u8)
     }
 }

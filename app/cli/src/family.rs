@@ -5,21 +5,16 @@
 use std::sync::OnceLock;
 
 use brushwork_core::session::line::SimulatedLine;
-use brushwork_link::device::{DeviceHandle, Identity};
-use brushwork_link::family::{FamilyRef, Model};
-use brushwork_link::settings::{SettingsImage, SettingsTable};
-use brushwork_link::{FamilyChoice, Wire};
+use brushwork_link::family::Model;
+use brushwork_link::{DeviceHandle, FamilyChoice, FamilyRef, Identity, SettingsImage, SettingsTable, Wire};
 use brushwork_values::Motor;
 use clap::{Arg, ArgMatches};
 use serde::Serialize;
 use serde_json::Value;
 
-use super::exit::Exit;
-use super::interrupt::Interrupt;
 use super::monitor::follower::Follower;
-use super::output::{Output, OutputError};
-use super::readings::Readings;
 use super::tool::Tool;
+use super::{Exit, Interrupt, Output, OutputError, Readings};
 
 /// A family as commands see it. What has a default here need not be thought of where it does not apply.
 pub trait Family: Send + Sync {

@@ -36,9 +36,15 @@ use clap::{ArgMatches, CommandFactory as _, FromArgMatches as _};
 
 use args::{Cli, Command, WindowArgs};
 pub use exit::Exit;
-use interrupt::Interrupt;
-use output::Output;
 pub use tool::Tool;
+
+pub use client::Client;
+pub use family::{Family, Page, Simulated};
+pub use interrupt::Interrupt;
+pub use new_file::{NewFile, Replace};
+pub use output::{Output, OutputError, say};
+pub use readings::Readings;
+pub use shared_args::{ConnectArgs, parse_seconds};
 
 /// Runs the program: a command, or the window where none is given. `open_window` returns when the window is closed, or says in a sentence
 /// why there is none.

@@ -1,15 +1,12 @@
 //! `brushwork list`: serial ports, and the controllers that are simulated in this program.
 
-use brushwork_link::SystemClock;
-use brushwork_link::device::{Event, Identity, PollRate};
-use brushwork_link::transport::{ConnectTarget, PortInfo, list_ports};
+use brushwork_link::transport::list_ports;
+use brushwork_link::{ConnectTarget, Event, Identity, PollRate, PortInfo, SystemClock};
 use serde::Serialize;
 
 use super::args::ListArgs;
-use super::exit::Exit;
 use super::family::{SimulatedModel, families};
-use super::interrupt::Interrupt;
-use super::output::{Output, OutputError, say};
+use super::{Exit, Interrupt, Output, OutputError, say};
 use brushwork_core::session::{self, SessionOptions};
 
 #[derive(Debug, Serialize)]

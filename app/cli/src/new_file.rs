@@ -9,8 +9,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::exit::Exit;
-use super::output::say;
+use super::{Exit, say};
 
 /// Whether a file that exists may be replaced.
 #[derive(Debug, Clone, Copy, Default, Args)]

@@ -2,15 +2,12 @@
 
 use std::time::{Duration, Instant};
 
-use brushwork_link::SystemClock;
-use brushwork_link::device::{Event, Identity, PollRate};
+use brushwork_link::{Event, Identity, PollRate, SystemClock};
 use serde_json::json;
 
 use super::args::NodesArgs;
 use super::client::next_event;
-use super::exit::Exit;
-use super::interrupt::Interrupt;
-use super::output::Output;
+use super::{Exit, Interrupt, Output};
 use brushwork_core::session::{self, SessionOptions};
 
 /// How long the search may take: all node ids are asked at once, and each that answers is then identified.

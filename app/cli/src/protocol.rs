@@ -1,9 +1,7 @@
 //! `brushwork protocol`: the reference of a family's protocol, drawn from its tables.
 
 use super::args::ProtocolArgs;
-use super::exit::Exit;
-use super::family;
-use super::output::Output;
+use super::{Exit, Output, family};
 
 /// Prints the whole page or what is asked for.
 pub fn run(args: &ProtocolArgs, out: &mut Output) -> Result<Exit, Exit> {

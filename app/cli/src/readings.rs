@@ -1,8 +1,7 @@
 //! What has been read of a unit so far, for `brushwork status` and `drive`.
 
-use brushwork_link::Stream;
-use brushwork_link::device::{Channel, Event, Identity, Newest, StatusReport};
-use brushwork_link::settings::SettingsImage;
+use brushwork_link::device::Newest;
+use brushwork_link::{Channel, Event, Identity, SettingsImage, StatusReport, Stream};
 use serde_json::{Map, Value, json};
 
 use super::output::say;

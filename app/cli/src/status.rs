@@ -9,12 +9,8 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::args::StatusArgs;
-use super::client::Client;
-use super::exit::Exit;
 use super::family::{self, Judged, Said};
-use super::interrupt::Interrupt;
-use super::output::{Output, OutputError, say};
-use super::readings::Readings;
+use super::{Client, Exit, Interrupt, Output, OutputError, Readings, say};
 
 /// How long the slow signals may take to come round.
 const FIRST_READING_LIMIT: Duration = Duration::from_secs(20);

@@ -11,11 +11,8 @@ use serde_json::json;
 
 use super::args::StopArgs;
 use super::client::{self, CONNECT_LIMIT};
-use super::exit::Exit;
-use super::family;
-use super::interrupt::Interrupt;
-use super::output::{Output, OutputError, say};
 use super::shared_args::LineArgs;
+use super::{Exit, Interrupt, Output, OutputError, family, say};
 use brushwork_core::session::{self, Session, SessionOptions};
 
 /// How long the controllers may take to confirm: late replies at 2400 bit/s take 6 s.

@@ -2,9 +2,7 @@
 
 use clap::{ArgMatches, Args, Command};
 
-use super::exit::Exit;
-use super::interrupt::Interrupt;
-use super::output::Output;
+use super::{Exit, Interrupt, Output};
 
 /// Arguments as their type has them; ends the program where they do not fit, which only happens to those that were not read before.
 pub fn typed<A: Args>(arguments: &ArgMatches) -> A {

@@ -9,6 +9,7 @@ pub mod recording;
 pub mod session;
 pub mod settings;
 pub mod tune;
+pub mod words;
 
 #[cfg(test)]
 #[path = "../../gui/tests/gui/support/wait.rs"]

@@ -12,26 +12,19 @@ use brushwork_plant::world::WorldAction;
 use crossbeam_channel::TryRecvError;
 use egui::{Context, Ui, ViewportCommand};
 
-use super::actions;
 use super::command::{Command, GuidedAction};
 use super::ending::EndBySignal;
 use super::frame::FRAME_INTERVAL;
-use super::keys;
 use super::links::Links;
-use super::model::drawer::Tab;
-use super::model::general::Sheet;
-use super::model::jobs::Owner;
-use super::model::link::{Arming, Effect};
-use super::model::message::Gravity;
 use super::model::palette::Palette;
-use super::model::screen::Screen;
 use super::model::traffic::Transact;
 use super::model::{Appearance, ConnectionId, Model};
 use super::parts::{Parts, SimulatedWorld};
 use super::remember::Memory;
 use super::screens::face;
 use super::tune::model::Afterwards;
-use super::{shell, theme};
+use super::{actions, keys, shell, theme};
+use crate::model::{Arming, Effect, Gravity, Owner, Screen, Sheet, Tab};
 
 mod debugging;
 mod leaving;
@@ -84,7 +77,7 @@ impl App {
 
     /// Makes the window like it was, and keeps from now on what it is like.
     pub fn remember(&mut self, memory: Memory) {
-        memory.remembered().recall(&mut self.model);
+        memory.current.recall(&mut self.model);
         self.memory = Some(memory);
     }
 
@@ -337,13 +330,13 @@ impl App {
             Command::Debug(action) => self.debug(action),
             Command::Mcl(action) => self.edit_mcl(action),
             Command::DownloadMcl => self.download_mcl(),
-            Command::CancelDownload => model.front.script.cancel(),
+            Command::CancelDownload => model.front.script.job.cancel(),
             Command::StartScript => self.start_script(),
             Command::StopScript => self.stop_script(),
             Command::Theme(theme) => model.appearance.theme = theme,
             Command::PlainEdges(plain) => model.appearance.plain = plain,
             Command::Scale(percent) => model.appearance.set_scale(percent),
-            Command::OpenCanOpen => model.canopen.show(model.devices.ports()),
+            Command::OpenCanOpen => model.canopen.show(&model.devices.ports),
             Command::Graph(action) => model.front.graph.act(action),
             Command::PauseTraffic(paused) => model.front.traffic.log.set_paused(paused),
             Command::ClearHistory => model.front.history.clear(),
@@ -443,7 +436,7 @@ impl App {
             PollRate::Every(time) => time,
             PollRate::Fastest | PollRate::Off => FRAME_INTERVAL,
         };
-        self.model.front.graph.set_interval(interval.as_secs_f64());
+        self.model.front.graph.rate.ask(interval.as_secs_f64());
         if self.device().is_some() {
             self.request(Request::Poll(rate));
         }

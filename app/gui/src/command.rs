@@ -2,8 +2,7 @@
 
 use std::rc::Rc;
 
-use brushwork_link::device::{ArmScope, PollRate};
-use brushwork_link::transport::Stream;
+use brushwork_link::{ArmScope, PollRate, Stream};
 use brushwork_plant::world::WorldAction;
 use brushwork_values::{Motor, Value};
 use egui::ThemePreference;
@@ -13,14 +12,9 @@ use super::family_action::FamilyAction;
 use super::graph::GraphAction;
 use super::mcl::MclAction;
 use super::model::ConnectionId;
-use super::model::drawer::Tab;
-use super::model::general::{Section, Sheet};
 pub use super::model::guided::GuidedAction;
-use super::model::help_page::HelpPage;
-use super::model::loop_settings::Column;
-use super::model::screen::Screen;
-use super::model::settings::SettingsAction;
 pub use super::tune::TuneAction;
+use crate::model::{Column, HelpPage, Screen, Section, SettingsAction, Sheet, Tab};
 
 /// One action.
 #[derive(Clone, Debug)]

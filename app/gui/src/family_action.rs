@@ -4,9 +4,7 @@ use std::fmt::Debug;
 
 use brushwork_core::keep::Store;
 use brushwork_core::session::firmware::LoaderPlace;
-use brushwork_link::device::Request;
-use brushwork_link::settings::SettingsImage;
-use brushwork_link::transport::ConnectTarget;
+use brushwork_link::{ConnectTarget, Request, SettingsImage};
 
 use super::model::screen::Screen;
 use super::model::{ConnectionId, Model};

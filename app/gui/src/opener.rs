@@ -3,9 +3,8 @@
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 use std::time::Duration;
 
-use brushwork_link::device::Addresses;
-use brushwork_link::transport::{ConnectTarget, PortInfo, list_ports};
-use brushwork_link::{Clock, Failure, SystemClock};
+use brushwork_link::transport::list_ports;
+use brushwork_link::{Addresses, Clock, ConnectTarget, Failure, PortInfo, SystemClock};
 use brushwork_plant::server::Pace;
 use brushwork_plant::world::{WorldAction, WorldView};
 use brushwork_script::debug::{Request, View, Wanted};
@@ -14,9 +13,8 @@ use egui::Context;
 
 use super::parts::{OpenLink, Opener, Parts, PortSource, SimulatedWorld};
 use brushwork_core::keep::{Keeping, Store};
-use brushwork_core::session;
 use brushwork_core::session::firmware::LoaderPlace;
-use brushwork_core::session::{SessionError, SessionOptions, Simulation};
+use brushwork_core::session::{self, SessionError, SessionOptions, Simulation};
 
 /// How often the list of ports is made.
 const LISTING_INTERVAL: Duration = Duration::from_secs(1);

@@ -4,9 +4,7 @@
 
 use std::sync::Arc;
 
-use brushwork_link::Failure;
-use brushwork_link::device::{Addresses, DeviceHandle};
-use brushwork_link::transport::{ConnectTarget, PortInfo};
+use brushwork_link::{Addresses, ConnectTarget, DeviceHandle, Failure, PortInfo};
 use brushwork_plant::server::Pace;
 use brushwork_plant::world::{WorldAction, WorldView};
 use brushwork_script::debug::{Request, View, Wanted};

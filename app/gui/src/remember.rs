@@ -3,10 +3,9 @@
 //! The file is replaced as a whole. One that cannot be read is a sentence and the defaults; it is put aside, not
 //! overwritten. Values that make no sense count as not given.
 
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 use std::thread::{self, JoinHandle};
+use std::{fs, io};
 
 use brushwork_link::Failure;
 use brushwork_link::settings::replace_file;
@@ -89,7 +88,7 @@ impl Remembered {
         self.plain = model.appearance.plain;
         self.scale_percent = model.appearance.scale_percent;
         model.screen.title().clone_into(&mut self.screen);
-        self.recent = model.devices.recent().to_vec();
+        self.recent = model.devices.recent.to_vec();
         self.left_width = model.layout.left_width.round();
         self.world_width = model.layout.world_width.round();
     }
@@ -115,7 +114,7 @@ impl Remembered {
 /// The file, and when it is written.
 pub struct Memory {
     saved: Remembered,
-    current: Remembered,
+    pub current: Remembered,
     changed_at_s: Option<f64>,
     writer: Writer,
 }
@@ -140,10 +139,6 @@ impl Memory {
             writer: Writer::start(path),
         };
         (memory, failure)
-    }
-
-    pub fn remembered(&self) -> &Remembered {
-        &self.current
     }
 
     /// Looks at the window in each frame, and keeps what has changed once it has settled. A failure is given once.
@@ -314,10 +309,10 @@ mod tests {
         let (memory, failure) = Memory::at(Some(path));
         assert!(failure.is_none());
         let mut again = Model::default();
-        memory.remembered().recall(&mut again);
+        memory.current.recall(&mut again);
         assert_eq!(again.appearance, model.appearance);
         assert_eq!(again.screen, Screen::Velocity);
-        assert_eq!(again.devices.recent(), ["/dev/ttyACM0"]);
+        assert_eq!(again.devices.recent, ["/dev/ttyACM0"]);
         assert_eq!(again.layout, model.layout);
     }
 
@@ -327,7 +322,7 @@ mod tests {
         fs::create_dir_all(path.parent().unwrap()).unwrap();
         fs::write(&path, "{ \"theme\": \"purple\" ").unwrap();
         let (memory, failure) = Memory::at(Some(path.clone()));
-        assert_eq!(*memory.remembered(), Remembered::default());
+        assert_eq!(memory.current, Remembered::default());
         let reported = failure.unwrap().to_string();
         assert!(reported.contains("window.json") && reported.contains("broken"), "{reported}");
         assert!(path.with_extension("json.broken").exists() && !path.exists());
@@ -342,9 +337,9 @@ mod tests {
         fs::write(&path, text).unwrap();
         let (memory, failure) = Memory::at(Some(path));
         assert!(failure.is_none());
-        assert_eq!(memory.remembered().window, None);
+        assert_eq!(memory.current.window, None);
         let mut model = Model::default();
-        memory.remembered().recall(&mut model);
+        memory.current.recall(&mut model);
         assert_eq!(model.appearance.scale_percent, 250);
         assert_eq!(model.screen, Screen::DeviceStatus);
         assert!(model.layout.left_width >= 200.0);

@@ -45,7 +45,7 @@ pub fn run(window: WindowOptions) -> Result<(), WindowError> {
     }
     let opened = Arc::new(Mutex::new(false));
     let (memory, trouble) = Memory::open();
-    let options = native_options(memory.remembered());
+    let options = native_options(&memory.current);
     let result = quietly_until(&opened, || {
         let opened = opened.clone();
         eframe::run_native(

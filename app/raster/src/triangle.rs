@@ -3,9 +3,8 @@
 //! Corners are snapped to 1/256 pixel and edges are exact integers, with the top-left rule for pixels that lie on
 //! an edge, so that neighbours neither overlap nor leave a seam.
 
-use egui::Color32;
 use egui::epaint::Vertex;
-use egui::{Pos2, pos2};
+use egui::{Color32, Pos2, pos2};
 
 use crate::canvas::{Canvas, Clip, blend};
 use crate::texture::Texture;

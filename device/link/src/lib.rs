@@ -18,10 +18,17 @@ pub mod unit;
 pub mod wire;
 
 pub use clock::{Clock, SystemClock, VirtualClock};
+pub use device::{
+    Addresses, ArmScope, Channel, DeviceHandle, Drive, DriveCommand, Event, Identity, Job, JobEnding,
+    JobTicket, PollRate, QueuedJob, Request, Sample, StatusReport,
+};
 pub use driver::{Driver, install, register};
 pub use exchange::{ExchangeError, Interruption, LinkStatistics};
 pub use failure::Failure;
 pub use family::{FamilyChoice, FamilyRef, families};
-pub use transport::{ConnectTarget, Stream, Transport, TransportError};
+pub use settings::{
+    Keeper, Profile, ReadReport, SettingValue, SettingsImage, SettingsTable, Subject, WriteOptions,
+};
+pub use transport::{ConnectTarget, PortInfo, Stream, Transport, TransportError};
 pub use unit::{FirmwareGeneration, UnitAddress};
 pub use wire::{HiddenSettings, Wire};

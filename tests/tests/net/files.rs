@@ -221,9 +221,9 @@ fn the_window_is_as_it_was_left() {
     let (memory, failure) = Memory::at(Some(path));
     assert!(failure.is_none(), "{failure:?}");
     let mut model = Model::default();
-    memory.remembered().recall(&mut model);
+    memory.current.recall(&mut model);
     assert_eq!(model.screen.title(), "Velocity Settings");
-    assert_eq!(model.devices.recent(), ["sim:mcp266", "/dev/ttyACM0"]);
+    assert_eq!(model.devices.recent, ["sim:mcp266", "/dev/ttyACM0"]);
     assert_eq!(model.appearance.scale_percent, 125);
     assert_eq!(format!("{:?}", model.appearance.theme), "Light");
 }

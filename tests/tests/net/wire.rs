@@ -7,6 +7,7 @@ use std::time::Duration;
 use brushwork_canopen::adapter::Form;
 use brushwork_core::keep::TrialKeeper;
 use brushwork_core::tune::law::{Report, Request as Tuning, Setup};
+use brushwork_core::tune::live::Live;
 use brushwork_core::tune::{Slot, Target, leaves_off, prepare, restore, run, take};
 use brushwork_link::FamilyChoice;
 use brushwork_link::device::{ArmScope, DeviceOptions, Event, Job, JobContext, JobEnding, Request};
@@ -226,7 +227,7 @@ fn tuned<M: Machine + 'static>(
     assert!(link.arm(ArmScope::CommandLine), "{:?}", link.events);
     transcript.act("arm", link);
     let found: Slot<Report> = Slot::default();
-    link.finish(run(target, request, &found), LIMIT);
+    link.finish(run(target, request, &found, &Live::default()), LIMIT);
     transcript.long_act("run", link);
     let report = take(&found);
     let left_off = leaves_off(report.as_ref(), None);

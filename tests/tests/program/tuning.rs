@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use brushwork_core::keep::TrialKeeper;
 use brushwork_core::tune::law::{Report, Request as Tuning, Setup};
+use brushwork_core::tune::live::Live;
 use brushwork_core::tune::{Slot, Target, leaves_off, prepare, restore, run, take};
 use brushwork_link::device::{ArmScope, DeviceOptions, Event, Job, JobEnding, JobTicket, Request};
 use brushwork_link::settings::{Act, Ending, Entry, Keeper, SettingsTable, Subject, WriteOptions, save_kept};
@@ -82,7 +83,7 @@ fn tuned_as(
     assert_backed_up(link, &journal);
     assert!(link.arm(ArmScope::CommandLine), "{:?}", link.events);
     let found: Slot<Report> = Slot::default();
-    let (job, ticket) = run(target, request, &found).queued();
+    let (job, ticket) = run(target, request, &found, &Live::default()).queued();
     let ticket = Arc::new(ticket);
     before_run(link, &ticket);
     link.events.clear();
@@ -274,7 +275,7 @@ fn stages(request: Tuning) -> Vec<(String, Duration)> {
             reported.extend(handle.events().try_iter().map(|event| (event, at)));
         });
     }
-    link.start(run(TARGET, request, &Slot::default()));
+    link.start(run(TARGET, request, &Slot::default(), &Live::default()));
     link.run_for(ms(29_000));
     let mut starts: Vec<(String, Duration)> = Vec::new();
     let mut end = begun;
@@ -342,7 +343,7 @@ fn a_cable_pulled_at_every_stage_leaves_the_motor_to_the_controllers_time_out() 
             assert!(link.arm(ArmScope::CommandLine), "{:?}", link.events);
             strike(&link, after, WorldAction::Unplug { unplugged: true });
             let found: Slot<Report> = Slot::default();
-            link.finish(run(TARGET, request, &found), ms(20_000));
+            link.finish(run(TARGET, request, &found, &Live::default()), ms(20_000));
             link.machine_alone_for(ms(400));
             let duty = link.bus(|bus| bus.controllers()[0].view().axes[0].output.duty());
             assert_eq!(duty, 0.0, "{:?}, pulled at \"{text}\"", request.method);

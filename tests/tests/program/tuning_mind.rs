@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use brushwork_core::keep::TrialKeeper;
 use brushwork_core::tune::law::{Report, Request as Tuning, Setup};
+use brushwork_core::tune::live::Live;
 use brushwork_core::tune::{Slot, Target, leaves_off, prepare, restore, run, take};
 use brushwork_link::Failure;
 use brushwork_link::FamilyChoice;
@@ -90,7 +91,7 @@ fn tuned_by(
     let before = take(&setup).expect("it was read");
     assert!(link.arm(ArmScope::CommandLine), "{:?}", link.events);
     let found: Slot<Report> = Slot::default();
-    let (job, ticket) = run(TARGET, request, &found).queued();
+    let (job, ticket) = run(TARGET, request, &found, &Live::default()).queued();
     let ticket = Arc::new(ticket);
     before_run(link, &ticket);
     link.events.clear();
@@ -248,7 +249,10 @@ fn when_the_cable_is_pulled_out_the_motor_runs_up_to_the_fence_and_stops() {
         link.finish(prepare(TARGET, subject, &setup, &keeper), ms(30_000));
         assert!(link.arm(ArmScope::CommandLine), "{:?}", link.events);
         strike(&link, ms(after), &WorldAction::Unplug { unplugged: true });
-        link.finish(run(TARGET, of(Method::Velocity), &Slot::<Report>::default()), ms(after + 3_000));
+        link.finish(
+            run(TARGET, of(Method::Velocity), &Slot::<Report>::default(), &Live::default()),
+            ms(after + 3_000),
+        );
         link.line.pass(ms(2_000));
         let place = registers_of(&link, 0);
         link.line.pass(ms(1_000));

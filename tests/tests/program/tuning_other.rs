@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use brushwork_core::keep::TrialKeeper;
 use brushwork_core::tune::law::{Report, Request as Tuning, Setup};
+use brushwork_core::tune::live::Live;
 use brushwork_core::tune::{Slot, Target, leaves_off, prepare, restore, run, take};
 use brushwork_link::device::{
     Addresses, ArmScope, DeviceHandle, DeviceLoop, DeviceOptions, Event, Identity, Job, JobEnding, Request,
@@ -195,7 +196,8 @@ fn tuned(manner: Manner, motor: Motor, request: Tuning) -> Report {
     let old = take(&setup).expect("it was read");
     assert!(link.arm(), "{place}: {:?}", link.events);
     let found: Slot<Report> = Slot::default();
-    let ending = link.job(run(Target { encoder: Some(old.encoder), ..TARGET }, request, &found));
+    let ending =
+        link.job(run(Target { encoder: Some(old.encoder), ..TARGET }, request, &found, &Live::default()));
     assert!(ending.is_some(), "{place}: the run hangs");
     let report = take(&found).unwrap_or_else(|| panic!("{place}: {ending:?}"));
     // From full duty to none at the highest acceleration takes 50 ms.

@@ -8,10 +8,8 @@ mod script;
 mod sim;
 mod unit;
 
-use brushwork_link::Wire;
-use brushwork_link::device::{DeviceHandle, Identity};
-use brushwork_link::family::{FamilyRef, Model};
-use brushwork_link::settings::{SettingsImage, SettingsTable};
+use brushwork_link::family::Model;
+use brushwork_link::{DeviceHandle, FamilyRef, Identity, SettingsImage, SettingsTable, Wire};
 use brushwork_mcp_client::{MCP, settings};
 use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::packet_serial::{Address, Generation};
@@ -19,11 +17,9 @@ use brushwork_values::Motor;
 use clap::ArgMatches;
 use serde_json::json;
 
-use crate::exit::Exit;
-use crate::family::{Family, Judged, Page, Said, Simulated, SimulatedModel};
-use crate::interrupt::Interrupt;
+use super::{Exit, Family, Interrupt, Page, Readings, Simulated};
+use crate::family::{Judged, Said, SimulatedModel};
 use crate::monitor::follower::Follower;
-use crate::readings::Readings;
 use crate::tool::Tool;
 use decoder::Decoder;
 

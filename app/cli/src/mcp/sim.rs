@@ -11,9 +11,8 @@ use clap::ArgMatches;
 
 use super::script::download::image_of;
 use crate::args::SimArgs;
-use crate::exit::Exit;
-use crate::family::Simulated;
 use crate::tool::typed;
+use crate::{Exit, Simulated};
 
 /// The units that are asked for.
 ///

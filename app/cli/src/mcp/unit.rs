@@ -1,7 +1,6 @@
 //! What shared commands ask of an MCP or RoboClaw: where its inputs stand, why its motors do not run, how fast they are.
 
-use brushwork_link::Wire;
-use brushwork_link::device::{DeviceHandle, Event, Identity, Request};
+use brushwork_link::{DeviceHandle, Event, Identity, Request, Wire};
 use brushwork_mcp_client::TypedWire as _;
 use brushwork_mcp_client::diagnosis::{Evidence, Measured, PinEnd, diagnose, homed};
 use brushwork_mcp_wire::packet_serial::{commands, name};
@@ -9,10 +8,8 @@ use brushwork_values::Motor;
 use serde_json::json;
 
 use crate::client::{ask, wait};
-use crate::exit::Exit;
 use crate::family::{Judged, Said};
-use crate::interrupt::Interrupt;
-use crate::readings::Readings;
+use crate::{Exit, Interrupt, Readings};
 
 /// Where the input pins stand, in the raw percent of command 147. A RoboClaw does not know the command; its status word has bits of
 /// its own.

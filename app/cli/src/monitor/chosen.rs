@@ -4,9 +4,7 @@ use brushwork_link::FamilyChoice;
 
 use super::args::MonitorArgs;
 use super::follower::Follower;
-use crate::client;
-use crate::exit::Exit;
-use crate::family;
+use crate::{Exit, client, family};
 
 /// The follower of the family that is meant, or of the first one.
 pub fn follower(args: &MonitorArgs) -> Result<Box<dyn Follower>, Exit> {

@@ -11,8 +11,7 @@ use super::args::MonitorArgs;
 use super::chosen::follower;
 use super::follower::Follower;
 use super::record::{Direction, Record, print};
-use crate::exit::Exit;
-use crate::output::Output;
+use crate::{Exit, Output};
 
 /// Prints what the requests in the file mean.
 pub fn run(args: &MonitorArgs, path: &Path, out: &mut Output) -> Result<(), Exit> {

@@ -12,9 +12,7 @@ mod own;
 pub mod record;
 mod tap;
 
-use super::exit::Exit;
-use super::interrupt::Interrupt;
-use super::output::Output;
+use super::{Exit, Interrupt, Output};
 use args::MonitorArgs;
 
 /// Monitors until the time is over, the source ends, or the program is interrupted.

@@ -6,10 +6,7 @@ use brushwork_link::device::{Event, PollRate, Request};
 
 use super::args::MonitorArgs;
 use super::record::{Direction, Record, print};
-use crate::client;
-use crate::exit::Exit;
-use crate::interrupt::Interrupt;
-use crate::output::{Output, say};
+use crate::{Exit, Interrupt, Output, client, say};
 
 /// Polls and prints what goes over the wire.
 pub fn run(args: &MonitorArgs, out: &mut Output, interrupt: &Interrupt) -> Result<(), Exit> {

@@ -18,10 +18,7 @@ use super::args::MonitorArgs;
 use super::chosen::follower;
 use super::follower::Follower;
 use super::record::{Record, print};
-use crate::client;
-use crate::exit::Exit;
-use crate::interrupt::Interrupt;
-use crate::output::{Output, say};
+use crate::{Exit, Interrupt, Output, client, say};
 use brushwork_core::session;
 
 /// Records that may wait for a slow terminal; further ones are left out.

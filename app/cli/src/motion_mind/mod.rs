@@ -14,6 +14,7 @@ use crate::exit::Exit;
 use crate::family::{Family, Page, Simulated, SimulatedModel};
 use crate::monitor::follower::Follower;
 use crate::tool::Tool;
+use brushwork_core::words::capital;
 use decoder::Decoder;
 use sim::Switches;
 
@@ -84,11 +85,4 @@ impl Family for MotionMindCommands {
     fn stopped_addresses(&self) -> Vec<u8> {
         Vec::new()
     }
-}
-
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters
-        .next()
-        .map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + letters.as_str())
 }

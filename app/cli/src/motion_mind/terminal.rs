@@ -14,11 +14,8 @@ use brushwork_values::hex;
 use clap::Args;
 use serde_json::json;
 
-use crate::client::{Client, ask};
-use crate::exit::Exit;
-use crate::interrupt::Interrupt;
-use crate::output::{Output, say};
-use crate::shared_args::ConnectArgs;
+use crate::client::ask;
+use crate::{Client, ConnectArgs, Exit, Interrupt, Output, say};
 
 /// How long a reply may take.
 const REPLY_LIMIT: Duration = Duration::from_secs(10);

@@ -6,8 +6,7 @@ use std::str::FromStr;
 use clap::{Args, Subcommand};
 
 use super::side_name::SideName;
-use crate::new_file::Replace;
-use crate::shared_args::ConnectArgs;
+use crate::{ConnectArgs, Replace};
 
 /// Arguments of `brushwork settings`.
 #[derive(Debug, Args)]

@@ -5,8 +5,7 @@ use std::io::{self, BufRead as _, IsTerminal as _, Write as _};
 use crossbeam_channel::{TryRecvError, bounded};
 
 use super::controller::Controller;
-use crate::exit::Exit;
-use crate::output::say;
+use crate::{Exit, say};
 
 /// Returns when `question` was answered with yes, here or by `--yes` beforehand.
 ///
@@ -24,10 +23,7 @@ pub fn agreed(question: &str, yes: bool, controller: &Controller<'_>) -> Result<
     }
     let _ = write!(io::stderr(), "{question} [y/N] ");
     let breathe = || controller.breathe().inspect_err(|_| say("\nNothing was written."));
-    if is_yes(&line(&breathe)?) {
-        return Ok(());
-    }
-    Err(Exit::Refused.saying("Nothing was written."))
+    if is_yes(&line(&breathe)?) { Ok(()) } else { Err(Exit::Refused.saying("Nothing was written.")) }
 }
 
 /// One line from the terminal. It is read on a thread of its own, since reading cannot be called off; `breathe` is called

@@ -5,9 +5,7 @@ use serde_json::json;
 use super::args::{BackupsArgs, RestoreArgs};
 use super::controller::Controller;
 use super::{profile, write};
-use crate::exit::Exit;
-use crate::interrupt::Interrupt;
-use crate::output::{Output, say};
+use crate::{Exit, Interrupt, Output, say};
 use brushwork_core::keep::{Backup, Store};
 
 /// Lists the backups of every unit; no controller is needed.
@@ -48,7 +46,7 @@ pub fn restore(args: &RestoreArgs, out: &mut Output, interrupt: &Interrupt) -> R
     let backup = match &args.name {
         Some(name) => find(name)?,
         None => {
-            let newest = Store::of_user().backups(Some(controller.unit())).into_iter().next();
+            let newest = Store::of_user().backups(Some(&controller.unit)).into_iter().next();
             newest.ok_or_else(|| {
                 Exit::Refused.saying("There is no backup of this controller yet. `brushwork settings backups` lists those of others.")
             })?

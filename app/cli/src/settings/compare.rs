@@ -7,9 +7,7 @@ use super::controller::Controller;
 use super::diff::{self, Side};
 use super::side_name::SideName;
 use super::{backups, profile};
-use crate::exit::Exit;
-use crate::interrupt::Interrupt;
-use crate::output::{Output, say};
+use crate::{Exit, Interrupt, Output, say};
 use brushwork_core::keep::{Store, today};
 use brushwork_core::settings::known_defaults;
 
@@ -41,7 +39,7 @@ fn side(name: &SideName, controller: Option<&Controller<'_>>, other: Option<Side
         (SideName::Backup(Some(name)), _) => backup(name),
         (SideName::Backup(None), Some(controller)) => {
             let store = Store::of_user();
-            let newest = store.backups(Some(controller.unit())).into_iter().next();
+            let newest = store.backups(Some(&controller.unit)).into_iter().next();
             let newest = newest.ok_or_else(|| refuse("There is no backup of this controller yet."))?;
             backup(&newest.name)
         }
@@ -51,7 +49,7 @@ fn side(name: &SideName, controller: Option<&Controller<'_>>, other: Option<Side
             Ok(Side::new(name, controller.profile_of(&report, report.image.clone())))
         }
         (SideName::Eeprom, Some(controller)) => {
-            let known = Store::of_user().eeprom(controller.unit());
+            let known = Store::of_user().eeprom(&controller.unit);
             let known = known.ok_or_else(|| {
                 refuse(
                     "What the EEPROM of this controller holds is not known: it is known after a save or a reload \

@@ -1,27 +1,19 @@
 //! A connected controller whose settings are to be read or written: work runs as jobs on its device thread.
 
 use std::io::{self, IsTerminal as _, Write as _};
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use brushwork_link::UnitAddress;
-use brushwork_link::device::{
-    DeviceHandle, Event, Identity, Job, JobContext, JobEnding, JobReport, JobTicket, PollRate,
-};
-use brushwork_link::settings::{
-    Keeper, Profile, ReadReport, SettingsImage, SettingsTable, Subject, WriteOptions,
-};
+use brushwork_link::device::{JobContext, JobReport};
 use brushwork_link::transport::list_ports;
-use brushwork_link::{Failure, Stream};
+use brushwork_link::{
+    DeviceHandle, Event, Failure, Identity, Job, JobEnding, JobTicket, Keeper, PollRate, Profile, ReadReport,
+    SettingsImage, SettingsTable, Subject, UnitAddress, WriteOptions,
+};
 
 use super::cut_short;
-use crate::client::Client;
-use crate::exit::Exit;
-use crate::interrupt::{Interrupt, exit_of_interruption};
-use crate::output::say;
-use crate::shared_args::ConnectArgs;
+use crate::interrupt::exit_of_interruption;
+use crate::{Client, ConnectArgs, Exit, Interrupt, say};
 use brushwork_core::keep::{self, Keeping, Store, UnitId};
-use brushwork_core::session::Simulation;
 use brushwork_core::settings::{Act, Done};
 
 /// How long a cancelled job may take to end.
@@ -29,11 +21,11 @@ const CANCEL_LIMIT: Duration = Duration::from_secs(60);
 
 /// A connected controller of a known model.
 pub struct Controller<'i> {
-    client: Client,
+    pub client: Client,
     interrupt: &'i Interrupt,
-    subject: Subject,
+    pub subject: Subject,
     keeping: Keeping,
-    unit: UnitId,
+    pub unit: UnitId,
 }
 
 /// What a job handed back.
@@ -80,44 +72,14 @@ impl<'i> Controller<'i> {
         self.identity().unit_address()
     }
 
-    /// The link.
-    pub fn client(&self) -> &Client {
-        &self.client
-    }
-
     /// The device thread.
     pub fn device(&self) -> &DeviceHandle {
         self.client.device()
     }
 
-    /// Which of its streams the port is wired to, where that is known.
-    pub fn stream(&self) -> Option<Stream> {
-        self.client.stream
-    }
-
-    /// The simulated machine behind it, if it runs in this program.
-    pub fn simulation(&self) -> Option<Arc<Simulation>> {
-        self.client.simulation()
-    }
-
-    /// Whether the port's place among the controller's streams is known.
-    pub fn knows_own_stream(&self) -> bool {
-        self.client.stream.is_some()
-    }
-
     /// What writing has to know of the way to this controller.
     pub fn write_options(&self) -> WriteOptions {
         WriteOptions { own_stream: self.client.stream, simulated: self.identity().simulated, as_read: false }
-    }
-
-    /// Which settings it has, as far as known before it was read.
-    pub fn subject(&self) -> Subject {
-        self.subject
-    }
-
-    /// What it is known as on this computer.
-    pub fn unit(&self) -> &UnitId {
-        &self.unit
     }
 
     /// What keeps backup and journal of an act on it.
@@ -212,14 +174,6 @@ impl<'i> Controller<'i> {
     /// The link is lost or the program was asked to end.
     pub fn next_event(&self) -> Result<Option<Event>, Exit> {
         self.client.next_event(self.interrupt)
-    }
-
-    /// The same for what has to be done to its end.
-    ///
-    /// # Errors
-    /// The link is lost.
-    pub fn next_event_whatever(&self) -> Result<Option<Event>, Exit> {
-        self.client.next_event(&Interrupt::default())
     }
 
     fn wait_for_end<T>(&self, ticket: &JobTicket<T>, limit: Duration) -> Result<JobReport, Exit> {

@@ -5,9 +5,7 @@ use brushwork_link::settings::copy_motor;
 use super::args::CopyMotorArgs;
 use super::controller::Controller;
 use super::write::{self, Wanted};
-use crate::exit::Exit;
-use crate::interrupt::Interrupt;
-use crate::output::Output;
+use crate::{Exit, Interrupt, Output};
 
 /// Shows, asks, writes, reads back.
 pub fn run(args: &CopyMotorArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {

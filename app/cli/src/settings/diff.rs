@@ -7,9 +7,7 @@ use super::args::DiffArgs;
 use super::controller::Controller;
 use super::profile;
 use super::review::{Change, change_lines, changes};
-use crate::exit::Exit;
-use crate::interrupt::Interrupt;
-use crate::output::{Output, say};
+use crate::{Exit, Interrupt, Output, say};
 use brushwork_core::settings::counted;
 
 /// One side of a comparison.

@@ -7,9 +7,7 @@ use super::args::MemoryArgs;
 use super::ask;
 use super::controller::Controller;
 use super::review::{Change, change_lines, changes, tell};
-use crate::exit::Exit;
-use crate::interrupt::Interrupt;
-use crate::output::{Output, OutputError, say};
+use crate::{Exit, Interrupt, Output, OutputError, say};
 use brushwork_core::keep::{Store, UnitId, WearLevel};
 use brushwork_core::settings::{Act, Done, counted, known_defaults, merged};
 
@@ -18,7 +16,7 @@ pub fn save(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Resul
     let controller = Controller::connect(&args.connect, interrupt)?;
     let ram = controller.read()?;
     let list = changes(&ram.table, &known_defaults(&ram.table, &ram.image), &ram.image);
-    match Store::of_user().eeprom(controller.unit()) {
+    match Store::of_user().eeprom(&controller.unit) {
         Some(known) => {
             let head = format!("What would change in EEPROM, as known since {}:", known.date_text());
             let unsaved = changes(&ram.table, &known.settings, &merged(&known.settings, &ram.image));
@@ -33,7 +31,7 @@ pub fn save(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Resul
             AT_DEFAULT,
         )?,
     }
-    tell_wear(controller.unit());
+    tell_wear(&controller.unit);
     tell_stop(
         &ram.table,
         "Each write to EEPROM stops the motor for up to 40 ms; in mode 3 it does not start again by itself.",
@@ -41,7 +39,7 @@ pub fn save(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Resul
     let question = format!("Save all settings of {} to EEPROM?", controller.describe());
     ask::agreed(&question, args.yes, &controller)?;
     let (report, exit) = save_to_eeprom(&controller, &ram.table)?;
-    let wear = Store::of_user().wear(controller.unit());
+    let wear = Store::of_user().wear(&controller.unit);
     if args.json {
         out.json(&json!({
             "identity": controller.identity(),
@@ -146,7 +144,7 @@ fn tell_defaults(
 pub fn reload(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let controller = Controller::connect(&args.connect, interrupt)?;
     let ram = controller.read()?;
-    match Store::of_user().eeprom(controller.unit()) {
+    match Store::of_user().eeprom(&controller.unit) {
         Some(known) => {
             let head = format!("What comes back, as EEPROM is known since {}:", known.date_text());
             let list = changes(&ram.table, &ram.image, &merged(&ram.image, &known.settings));

@@ -20,9 +20,7 @@ mod side_name;
 mod unfinished;
 mod write;
 
-use super::exit::Exit;
-use super::interrupt::Interrupt;
-use super::output::Output;
+use super::{Exit, Interrupt, Output};
 use args::{SettingsAction, SettingsArgs};
 
 /// Does what the arguments ask for.

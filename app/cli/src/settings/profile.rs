@@ -6,10 +6,8 @@ use brushwork_link::settings::{OpenedProfile, Profile, ProfileFileError, Strictn
 
 use super::args::ExportArgs;
 use super::controller::Controller;
-use crate::exit::Exit;
-use crate::interrupt::Interrupt;
-use crate::new_file::{NewFile, NewFileError};
-use crate::output::{Output, say};
+use crate::new_file::NewFileError;
+use crate::{Exit, Interrupt, NewFile, Output, say};
 use brushwork_core::settings::counted;
 
 /// Reads the controller and writes the profile.

@@ -8,10 +8,7 @@ use serde_json::json;
 use super::args::{ReadArgs, ReferenceArgs};
 use super::controller::Controller;
 use super::keys;
-use crate::exit::Exit;
-use crate::family;
-use crate::interrupt::Interrupt;
-use crate::output::{Output, say};
+use crate::{Exit, Interrupt, Output, family, say};
 
 /// Reads and prints.
 pub fn run(args: &ReadArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {

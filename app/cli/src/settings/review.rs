@@ -1,9 +1,7 @@
 //! What a write will do, for people and as JSON: the changes with their units, and the commands that make them.
 
-use brushwork_link::UnitAddress;
-use brushwork_link::settings::{
-    Plan, Refusal, SettingValue, SettingsImage, SettingsTable, WriteOptions, diff, plan,
-};
+use brushwork_link::settings::{Plan, Refusal, diff, plan};
+use brushwork_link::{SettingValue, SettingsImage, SettingsTable, UnitAddress, WriteOptions};
 use brushwork_values::hex;
 use serde::Serialize;
 

@@ -7,9 +7,7 @@ use super::args::UnfinishedArgs;
 use super::controller::Controller;
 use super::cut_short::journals;
 use super::write::{self, Wanted};
-use crate::exit::Exit;
-use crate::interrupt::Interrupt;
-use crate::output::Output;
+use crate::{Exit, Interrupt, Output};
 use brushwork_core::keep::{OpenJournal, Store};
 use brushwork_core::settings::remedy;
 
@@ -17,7 +15,7 @@ use brushwork_core::settings::remedy;
 pub fn run(args: &UnfinishedArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let controller = Controller::connect(&args.connect, interrupt)?;
     let ram = controller.read_quietly()?;
-    let journals = journals(controller.unit());
+    let journals = journals(&controller.unit);
     let aftermaths: Vec<Aftermath> =
         journals.iter().map(|open| open.aftermath(&ram.table, &ram.image)).collect();
     show(args, &ram, &aftermaths, out)?;
@@ -30,10 +28,7 @@ pub fn run(args: &UnfinishedArgs, out: &mut Output, interrupt: &Interrupt) -> Re
     let wanted = Wanted::read(remedy(&newest.journal, &ram.table, &ram.image, args.undo, is_simulated));
     let how = write::how(args, newest.journal.act == Act::Save);
     let exit = write::carry_out(&controller, &ram, &wanted, &how, out)?;
-    if exit == Exit::Done && !args.dry_run {
-        return close(&journals);
-    }
-    Ok(exit)
+    if exit == Exit::Done && !args.dry_run { close(&journals) } else { Ok(exit) }
 }
 
 fn close(journals: &[OpenJournal]) -> Result<Exit, Exit> {

@@ -7,13 +7,10 @@ use brushwork_link::settings::{
 use serde_json::{Value, json};
 
 use super::args::{Assignment, ImportArgs, UnfinishedArgs, WriteArgs, WriteHow};
-use super::ask;
 use super::controller::Controller;
 use super::review::{self, Review};
-use super::{keys, memory, profile, read};
-use crate::exit::Exit;
-use crate::interrupt::Interrupt;
-use crate::output::{Output, say};
+use super::{ask, keys, memory, profile, read};
+use crate::{Exit, Interrupt, Output, say};
 use brushwork_core::settings::{Act, Done, counted, fitted, merged, write_options};
 
 /// Writes the changes given, and those of a profile.
@@ -102,7 +99,7 @@ pub fn carry_out(
     }
     let count = review.changes.len();
     if how.save {
-        memory::tell_wear(controller.unit());
+        memory::tell_wear(&controller.unit);
     }
     if count > 0 || how.save {
         ask::agreed(&question(controller, count, how.save), how.yes, controller)?;
@@ -204,7 +201,7 @@ fn review(
     let mut review = Review::new(&ram.table, &ram.image, &wanted.changes, options, controller.address())
         .map_err(cannot_be)?;
     let touches_streams = review.changes.iter().any(|change| change.key.starts_with("stream."));
-    if touches_streams && !controller.knows_own_stream() {
+    if touches_streams && controller.client.stream.is_none() {
         review.warnings.push(
             "It is not known which of the controller's streams this port is wired to; if it is one that \
              changes, the link may be lost. A target such as /dev/ttyUSB0,stream=ttl1 says it."

@@ -14,11 +14,8 @@ use clap::ArgMatches;
 use crossbeam_channel::Receiver;
 
 use super::args::SimArgs;
-use super::exit::Exit;
-use super::family::{Family, Simulated, families};
-use super::interrupt::Interrupt;
-use super::new_file::NewFile;
-use super::output::{Output, OutputError, say};
+use super::family::families;
+use super::{Exit, Family, Interrupt, NewFile, Output, OutputError, Simulated, say};
 use brushwork_core::session::line::SimulatedLine;
 
 /// Time between two looks at the server, and between two writes of the truth.

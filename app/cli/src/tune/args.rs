@@ -4,8 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
 
-use crate::new_file::Replace;
-use crate::shared_args::ConnectArgs;
+use crate::{ConnectArgs, Replace};
 
 /// Arguments of `brushwork tune`.
 #[derive(Debug, Args)]

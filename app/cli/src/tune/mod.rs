@@ -6,28 +6,25 @@ mod words;
 
 use std::time::{Duration, Instant};
 
-use brushwork_link::device::{ArmScope, Event, Job, JobEnding};
-use brushwork_link::settings::SettingsTable;
+use brushwork_link::{ArmScope, Event, Job, JobEnding, SettingsTable};
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::experiment_guard::GuardOptions;
 use brushwork_tuning::report::Verdict;
 use brushwork_tuning::tune::{Excitation, Method};
 use brushwork_values::Motor;
 
-use super::client::{Client, arm, start};
-use super::exit::Exit;
-use super::interrupt::{Interrupt, exit_of_interruption};
-use super::new_file::NewFile;
-use super::output::{Output, say};
+use super::client::{arm, start};
+use super::interrupt::exit_of_interruption;
 use super::settings::controller::Controller;
 use super::settings::memory::save_to_eeprom;
+use super::{Client, Exit, Interrupt, NewFile, Output, say};
 use args::{EncoderArg, MethodArg, RunArgs};
 pub use args::{TuneArgs, TuneCommand};
 use brushwork_core::keep::TrialKeeper;
-use brushwork_core::tune::file;
 use brushwork_core::tune::law::{Report, Request as TuneRequest};
+use brushwork_core::tune::live::Live;
 use brushwork_core::tune::{
-    LEFT_OFF, Restored, Slot, Target, leaves_off, prepare, restore, run as tuning_job, take,
+    LEFT_OFF, Restored, Slot, Target, file, leaves_off, prepare, restore, run as tuning_job, take,
 };
 
 /// How long arming and the short jobs may take.
@@ -89,7 +86,7 @@ fn session(
     found_report: &mut Option<Report>,
     interrupt: &Interrupt,
 ) -> Result<Restored, Exit> {
-    let client = controller.client();
+    let client = &controller.client;
     let encoder = args.encoder.map(|encoder| match encoder {
         EncoderArg::Quadrature => EncoderClass::Quadrature,
         EncoderArg::Absolute => EncoderClass::Absolute,
@@ -98,13 +95,13 @@ fn session(
     let target = Target { motor: motor(args), encoder, stream: client.stream };
     let setup = Slot::default();
     let keeper = TrialKeeper::new(controller.keeper());
-    let prepared = job(client, prepare(target, controller.subject(), &setup, &keeper), interrupt);
+    let prepared = job(client, prepare(target, controller.subject, &setup, &keeper), interrupt);
     let Some(before) = take(&setup) else { return Err(prepared.err().unwrap_or(Exit::NoLink)) };
     let target = Target { encoder: Some(before.encoder), ..target };
     let found: Slot<Report> = Slot::default();
-    let ran = prepared
-        .and_then(|()| arm(client.device(), ArmScope::CommandLine, interrupt))
-        .and_then(|()| job(client, tuning_job(target, request(args, method), &found), interrupt));
+    let ran = prepared.and_then(|()| arm(client.device(), ArmScope::CommandLine, interrupt)).and_then(|()| {
+        job(client, tuning_job(target, request(args, method), &found, &Live::default()), interrupt)
+    });
     *found_report = take(&found);
     // A raised interrupt has ended the run; it must not keep the old gains from being put back.
     let kept = found_report.as_ref().filter(|_| ran.is_ok());
@@ -158,7 +155,7 @@ fn conclude(
         return error.into();
     }
     if args.save && report.verdict != Verdict::Refused {
-        match save_to_eeprom(controller, &SettingsTable::new(controller.subject())) {
+        match save_to_eeprom(controller, &SettingsTable::new(controller.subject)) {
             Ok((saved, exit)) => {
                 say(saved.sentence());
                 if exit != Exit::Done {

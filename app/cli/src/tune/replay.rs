@@ -3,8 +3,7 @@
 use std::path::Path;
 
 use super::words;
-use crate::exit::Exit;
-use crate::output::{Output, say};
+use crate::{Exit, Output, say};
 use brushwork_core::tune::file;
 use brushwork_core::tune::law::Report;
 

@@ -6,8 +6,7 @@ use brushwork_tuning::registers::RegisterTable as _;
 use brushwork_tuning::report::Verdict;
 use serde_json::{Value, json};
 
-use crate::exit::Exit;
-use crate::output::{Output, OutputError};
+use crate::{Exit, Output, OutputError};
 
 /// The exit code of a verdict.
 pub fn exit_of(report: &Report) -> Exit {
@@ -107,8 +106,5 @@ fn print_gains(report: &Report, out: &mut Output) -> Result<(), OutputError> {
     }
     let rows = report.request.law.rows(&before.held, &report.proposed);
     let rows: Vec<Vec<String>> = rows.into_iter().map(|row| row.to_vec()).collect();
-    if rows.is_empty() {
-        return Ok(());
-    }
-    out.table(&["gain", "current", "proposed", "on the wire"], &rows)
+    if rows.is_empty() { Ok(()) } else { out.table(&["gain", "current", "proposed", "on the wire"], &rows) }
 }

@@ -102,10 +102,7 @@ impl Store {
 
     /// The backups of a unit, or of all units; newest first.
     pub fn backups(&self, unit: Option<&UnitId>) -> Vec<Backup> {
-        let folders = match unit {
-            Some(unit) => vec![unit.file_name()],
-            None => self.backup_folders(),
-        };
+        let folders = unit.map_or_else(|| self.backup_folders(), |unit| vec![unit.file_name()]);
         let files = folders.iter().flat_map(|folder| self.files(&[FOLDER, folder]));
         let mut backups: Vec<Backup> = files.filter_map(Backup::new).collect();
         backups.sort_by(|left, right| right.order().cmp(&left.order()));

@@ -1,8 +1,7 @@
 //! The folder in which everything is kept.
 
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 use brushwork_link::Failure;
 use brushwork_link::settings::replace_file;

@@ -4,10 +4,8 @@ use brushwork_mcp_client::{MCP, McpDriver, subject};
 use std::fs;
 use std::path::Path;
 
-use brushwork_link::UnitAddress;
-use brushwork_link::settings::{
-    Act, Ending, Entry, Keeper, Profile, SettingValue, SettingsImage, SettingsTable,
-};
+use brushwork_link::settings::{Act, Ending, Entry};
+use brushwork_link::{Keeper, Profile, SettingValue, SettingsImage, SettingsTable, UnitAddress};
 use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::packet_serial::Generation;
 

@@ -1,9 +1,7 @@
 //! Which controller something was kept of, as far as a computer can tell one from another.
 
-use brushwork_link::device::Identity;
 use brushwork_link::family::model_named;
-use brushwork_link::settings::Profile;
-use brushwork_link::transport::PortInfo;
+use brushwork_link::{Identity, PortInfo, Profile};
 
 /// How the names of files begin that are for one process alone.
 pub(super) const OWNER: &str = "process-";

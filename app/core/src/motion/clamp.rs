@@ -7,9 +7,8 @@
 
 use std::time::Duration;
 
-use brushwork_link::Failure;
-use brushwork_link::device::{Drive, DriveCommand, Job, JobContext};
-use brushwork_link::exchange::ExchangeError;
+use brushwork_link::device::JobContext;
+use brushwork_link::{Drive, DriveCommand, ExchangeError, Failure, Job};
 use brushwork_values::Motor;
 use crossbeam_channel::Sender;
 

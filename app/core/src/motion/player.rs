@@ -5,9 +5,8 @@
 
 use std::time::Duration;
 
-use brushwork_link::Failure;
-use brushwork_link::device::{Drive, DriveCommand, Job, JobContext};
-use brushwork_link::exchange::ExchangeError;
+use brushwork_link::device::JobContext;
+use brushwork_link::{Drive, DriveCommand, ExchangeError, Failure, Job};
 use brushwork_tuning::{Point, StepFigures};
 use brushwork_values::Motor;
 

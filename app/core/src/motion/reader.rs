@@ -1,7 +1,7 @@
 //! Encoder counts with their moments, as a job reads them.
 
+use brushwork_link::ExchangeError;
 use brushwork_link::device::JobContext;
-use brushwork_link::exchange::ExchangeError;
 use std::time::Duration;
 
 use super::speed::Reading;

@@ -192,10 +192,7 @@ pub fn read(
             return Ok(());
         }
     }
-    if began.is_none() {
-        return Err(at_line(path, 2, "there is no line with values".to_owned()));
-    }
-    Ok(())
+    if began.is_none() { Err(at_line(path, 2, "there is no line with values".to_owned())) } else { Ok(()) }
 }
 
 /// The delimiter that the first line has most of.

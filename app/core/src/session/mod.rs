@@ -7,11 +7,10 @@ use std::sync::Arc;
 
 use brushwork_canopen::NodeId;
 use brushwork_canopen::adapter::Form;
-use brushwork_link::FamilyChoice;
 use brushwork_link::device::{Addresses, DeviceHandle, DeviceOptions, DeviceThread, PollRate};
 use brushwork_link::driver::can_line;
 use brushwork_link::transport::{ConnectTarget, OpenError, Stream, Transport, list_ports, ports};
-use brushwork_link::{Clock, HiddenSettings};
+use brushwork_link::{Clock, FamilyChoice, HiddenSettings};
 
 pub mod firmware;
 pub mod line;
@@ -107,7 +106,7 @@ fn on_can(target: &ConnectTarget, simulation: Option<&Simulation>) -> Option<(Op
     match target {
         ConnectTarget::Can { node, form, .. } => Some((*node, *form)),
         ConnectTarget::Serial { .. } | ConnectTarget::Tcp { .. } | ConnectTarget::Sim(_) => {
-            simulation?.can_form().map(|form| (None, form))
+            simulation?.can_form.map(|form| (None, form))
         }
     }
 }

@@ -6,10 +6,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use brushwork_canopen::NodeId;
 use brushwork_canopen::adapter::Form;
 use brushwork_family::{Simulator, SimulatorError, Started, simulator};
-use brushwork_link::FamilyChoice;
-use brushwork_link::HiddenSettings;
-use brushwork_link::UnitAddress;
 use brushwork_link::transport::{ChannelTransport, Stream};
+use brushwork_link::{FamilyChoice, HiddenSettings, UnitAddress};
 use brushwork_plant::ParamsError;
 use brushwork_plant::server::{ChannelEnds, Endpoint, Server, ServerError, ServerOptions, SimHandle};
 use brushwork_plant::world::{WorldAction, WorldView};
@@ -22,7 +20,8 @@ pub struct Simulation {
     text: String,
     addresses: Vec<UnitAddress>,
     stream: Stream,
-    can_form: Option<Form>,
+    /// How its CAN adapter speaks, where it stands behind one.
+    pub can_form: Option<Form>,
     nodes: Vec<NodeId>,
     server: SimHandle<SimulatedLine>,
     /// What made its units.
@@ -92,11 +91,6 @@ impl Simulation {
     /// Whether it runs and is what `text` describes.
     pub fn is(&self, text: &str) -> bool {
         self.text == text && self.server.is_running()
-    }
-
-    /// How the adapter writes frames, where the line is one to a CAN bus.
-    pub fn can_form(&self) -> Option<Form> {
-        self.can_form
     }
 
     /// Whether there is one unit alone.

@@ -2,13 +2,11 @@
 
 use std::time::Duration;
 
-use brushwork_link::Failure;
 use brushwork_link::settings::{
-    DefaultsReport, Keeper, Known, ReadReport, SaveReport, SettingsImage, SettingsTable, WriteError,
-    WriteOptions, WriteReport, defaults_kept, read_all, read_some, reload_kept, save_kept,
-    write_kept_knowing,
+    DefaultsReport, Known, SaveReport, WriteError, WriteReport, defaults_kept, read_all, read_some,
+    reload_kept, save_kept, write_kept_knowing,
 };
-use brushwork_link::wire::Wire;
+use brushwork_link::{Failure, Keeper, ReadReport, SettingsImage, SettingsTable, Wire, WriteOptions};
 
 /// Longest time for reading: a serial line of 2400 bit/s takes most of it.
 const READING_LIMIT: Duration = Duration::from_secs(120);

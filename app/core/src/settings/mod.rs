@@ -5,9 +5,8 @@ mod act;
 
 pub use act::{Act, Done, counted};
 
-use brushwork_link::settings::{
-    Journal, OpenedProfile, Profile, Refusal, SettingsImage, SettingsTable, WriteOptions, plan,
-};
+use brushwork_link::settings::{Journal, OpenedProfile, Refusal, plan};
+use brushwork_link::{Profile, SettingsImage, SettingsTable, WriteOptions};
 
 /// How values are written of which some were read from a unit once (`taken`) and others typed. What was read may be out of range and
 /// is written as it was; what somebody types has to be right beside it.

@@ -7,27 +7,27 @@
 
 pub mod file;
 pub mod law;
-pub mod tap;
+pub mod live;
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use brushwork_family::tuned::{Tuned, failed, thrice};
-use brushwork_link::device::Job;
-use brushwork_link::settings::{Ending, SettingValue, Subject, begin_trial, end_act};
+use brushwork_link::settings::{Ending, begin_trial, end_act};
+use brushwork_link::{Job, SettingValue, Subject};
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::experiment_guard::RUN_STREAM_TIMEOUT_MS;
 use brushwork_tuning::report::Verdict;
 use brushwork_tuning::trial::run_trial;
-use brushwork_tuning::tune::tune;
+use brushwork_tuning::tune::tune_watched;
 use brushwork_values::Motor;
 
 pub use brushwork_family::{Restored, Target};
 
 use crate::keep::TrialKeeper;
 use law::{Families, Report, Request, Setup, Trial, TrialRequest};
-use tap::{Live, Tap};
+use live::Live;
 
 /// Verb phrase of the job before a run.
 const PREPARE: &str = "get ready to tune";
@@ -91,20 +91,16 @@ pub fn prepare(target: Target, subject: Subject, found: &Slot<Setup>, keeper: &T
     })
 }
 
-/// The run. It moves the motor, so it must be armed. The report is in its slot also after an interruption.
-pub fn run(target: Target, request: Request, found: &Slot<Report>) -> Job<()> {
-    run_watched(target, request, found, &Live::default())
-}
-
-/// The run, with a trace in `live` for whoever looks on.
-pub fn run_watched(target: Target, request: Request, found: &Slot<Report>, live: &Live) -> Job<()> {
+/// The run, with a trace in `live` for whoever looks on. It moves the motor, so it must be armed. The report is in its slot also after an
+/// interruption.
+pub fn run(target: Target, request: Request, found: &Slot<Report>, live: &Live) -> Job<()> {
     let (found, live) = (Arc::clone(found), live.clone());
     let limit = Duration::from_secs_f64(request.guard.time_limit_s) + GRACE;
     Job::moving(RUN, limit, move |context| {
         context.set_polling(false);
         // The time-out was set before: changing it now would undermine the arming.
         let mut axis = Families::axis(context, target, false);
-        let report = tune(&mut Tap::new(&mut *axis, live.clone()), &request);
+        let report = tune_watched(&mut *axis, &request, &mut |entry| live.take(entry));
         put(&found, report);
         Ok(())
     })
@@ -116,7 +112,7 @@ pub fn trial(target: Target, wanted: TrialRequest, found: &Slot<Trial>, live: &L
     Job::moving(TRIAL, TRIAL_LIMIT, move |context| {
         context.set_polling(false);
         let mut axis = Families::axis(context, target, false);
-        let trial = run_trial(&mut Tap::new(&mut *axis, live.clone()), &wanted);
+        let trial = run_trial(&mut *axis, &wanted, &mut |entry| live.take(entry));
         put(&found, trial);
         Ok(())
     })

@@ -1,20 +1,18 @@
 //! The Debug menu: the MCL debugger of simulated controllers.
 
 use brushwork_script::debug::StepKind;
-use egui::{Key, KeyboardShortcut, Modifiers};
+use egui::Key;
 
-use super::{Action, Keys, Ready, key, shift};
+use super::{Action, Keys, Ready, ctrl, key, only, shift};
 use crate::command::Command;
-use crate::debugger;
-use crate::debugger::DebugAction;
-use crate::model::Model;
-use crate::model::screen::Screen;
+use crate::debugger::{self, DebugAction};
+use crate::model::{Model, Screen};
 
 pub(super) const ACTIONS: &[Action] = &[
     entry!(Debug 0 "debug.run", "Run or Continue", "Lets a paused script go on, or starts the program that is in the simulated controller.",
         key(Key::F6), not_running, |_| Command::Debug(DebugAction::Run)),
     entry!(Debug 0 "debug.pause", "Pause Script", "Stops the script before its next line. The motors go on unless the world is frozen too.",
-        ctrl_key(Key::F6), running, |_| Command::Debug(DebugAction::Pause)),
+        ctrl(Key::F6), running, |_| Command::Debug(DebugAction::Pause)),
     entry!(Debug 1 "debug.step-into", "Step Into", "Runs one line; a GOSUB leads into its subroutine.",
         key(Key::F11), paused, |_| Command::Debug(DebugAction::Step(StepKind::Into))),
     entry!(Debug 1 "debug.step-over", "Step Over", "Runs one line with the subroutines it calls.",
@@ -24,17 +22,13 @@ pub(super) const ACTIONS: &[Action] = &[
     entry!(Debug 1 "debug.run-to-cursor", "Run to Cursor", "Runs on to the line of the caret, or the next one that has code.",
         shift(Key::F6), has_script, |_| Command::Debug(DebugAction::RunToCursor)),
     entry!(Debug 2 "debug.breakpoint", "Set or Remove Breakpoint", "Sets a breakpoint at the line of the caret, or takes it away.",
-        ctrl_key(Key::F8), on_screen, |_| Command::Debug(DebugAction::ToggleBreakpoint)),
+        ctrl(Key::F8), on_screen, |_| Command::Debug(DebugAction::ToggleBreakpoint)),
     entry!(Debug 2 "debug.clear-breakpoints", "Remove All Breakpoints", "Takes away every breakpoint of the program.",
         Keys::None, on_screen, |_| Command::Debug(DebugAction::ClearBreakpoints)),
 ];
 
-const fn ctrl_key(key: Key) -> Keys {
-    Keys::Shortcut(KeyboardShortcut::new(Modifiers::COMMAND, key))
-}
-
 fn on_screen(model: &Model) -> Ready {
-    if model.screen == Screen::MclEditor { Ok(()) } else { Err("Open the MCL Editor first.".into()) }
+    only(model.screen == Screen::MclEditor, "Open the MCL Editor first.")
 }
 
 fn can_debug(model: &Model) -> Ready {
@@ -45,24 +39,20 @@ fn can_debug(model: &Model) -> Ready {
 fn has_script(model: &Model) -> Ready {
     can_debug(model)?;
     let debug = &model.front.debug;
-    if debug.is_paused() || debug.is_running() {
-        Ok(())
-    } else {
-        Err("No script runs: download the program and start it.".into())
-    }
+    only(debug.is_paused() || debug.is_running(), "No script runs: download the program and start it.")
 }
 
 fn paused(model: &Model) -> Ready {
     can_debug(model)?;
-    if model.front.debug.is_paused() { Ok(()) } else { Err("The script is not paused.".into()) }
+    only(model.front.debug.is_paused(), "The script is not paused.")
 }
 
 fn running(model: &Model) -> Ready {
     can_debug(model)?;
-    if model.front.debug.is_running() { Ok(()) } else { Err("No script runs.".into()) }
+    only(model.front.debug.is_running(), "No script runs.")
 }
 
 fn not_running(model: &Model) -> Ready {
     can_debug(model)?;
-    if model.front.debug.is_running() { Err("The script runs already.".into()) } else { Ok(()) }
+    only(!model.front.debug.is_running(), "The script runs already.")
 }

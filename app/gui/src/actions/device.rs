@@ -4,15 +4,11 @@ use brushwork_link::device::ArmScope;
 use brushwork_values::Motor;
 use egui::Key;
 
-use super::{Action, Keys, Ready, always, connected, ctrl, ctrl_shift, key, settings_idle};
+use super::{Action, Keys, Ready, always, connected, ctrl, ctrl_shift, key, only, settings_idle};
 use crate::command::Command;
 use crate::family::Ability;
 use crate::mcl::MclAction;
-use crate::model::drawer::Tab;
-use crate::model::general::{Section, Sheet};
-use crate::model::link::Arming;
-use crate::model::screen::Screen;
-use crate::model::{Model, Phase};
+use crate::model::{Arming, Model, Phase, Screen, Section, Sheet, Tab};
 use crate::tune::{Loop, TuneAction};
 
 pub(super) const ACTIONS: &[Action] = &[
@@ -78,19 +74,13 @@ pub(super) const ACTIONS: &[Action] = &[
 
 /// What has to be so, unless the controller in front is of a family that lacks the thing altogether.
 fn has(model: &Model, ability: Ability, ready: fn(&Model) -> Ready) -> Ready {
-    match model.front.family().lacks(ability) {
-        Some(why) => Err(why.into()),
-        None => ready(model),
-    }
+    model.front.family().lacks(ability).map_or_else(|| ready(model), |why| Err(why.into()))
 }
 
 /// Guided tuning of a loop: the mode of the controller may leave it no such loop.
 fn has_loop(model: &Model, screen: Screen) -> Ready {
     connected(model)?;
-    match model.front.screens().contains(&screen) {
-        true => Ok(()),
-        false => Err("This controller has no such loop as it is set.".into()),
-    }
+    only(model.front.screens().contains(&screen), "This controller has no such loop as it is set.")
 }
 
 fn can_tune(model: &Model) -> Ready {
@@ -101,41 +91,27 @@ fn can_tune(model: &Model) -> Ready {
     if let Some(why) = model.front.cannot_tune() {
         return Err(why.into());
     }
-    if model.front.is_guided() {
-        return Err("A job moves the motors already.".into());
-    }
-    if model.front.link.arming.is_armed_for(which.scope()) {
-        Ok(())
-    } else {
-        Err("Arm this screen first.".into())
-    }
+    only(!model.front.is_guided(), "A job moves the motors already.")?;
+    only(model.front.link.arming.is_armed_for(which.scope()), "Arm this screen first.")
 }
 
 fn can_arm(model: &Model) -> Ready {
     connected(model)?;
-    match model.arm_scope() {
-        Some(_) => Ok(()),
-        None => {
-            Err("This screen moves no motor. Go to the PWM, Velocity, Position or MCL screen first.".into())
-        }
-    }
+    let why = "This screen moves no motor. Go to the PWM, Velocity, Position or MCL screen first.";
+    only(model.arm_scope().is_some(), why)
 }
 
 fn can_download(model: &Model) -> Ready {
     connected(model)?;
-    match model.front.script.is_running() {
-        true => Err("A download runs already. Wait for it or cancel it.".into()),
-        false => Ok(()),
-    }
+    let waits = "A download runs already. Wait for it or cancel it.";
+    only(!model.front.script.job.is_running(), waits)
 }
 
 /// A script can move motors, so starting one is a motion.
 fn can_start_script(model: &Model) -> Ready {
     connected(model)?;
-    if model.front.link.arming.is_armed_for(ArmScope::Script) {
-        return Ok(());
-    }
-    Err("A script can move motors. Arm the MCL Editor screen first.".into())
+    let is_armed = model.front.link.arming.is_armed_for(ArmScope::Script);
+    only(is_armed, "A script can move motors. Arm the MCL Editor screen first.")
 }
 
 fn arm_or_disarm(model: &Model) -> Command {
@@ -156,18 +132,15 @@ fn open_generator(model: &Model) -> Command {
 }
 
 fn has_link(model: &Model) -> Ready {
-    match model.front.phase {
-        Phase::Open { .. } | Phase::Opening { .. } => Ok(()),
-        Phase::Closed | Phase::Closing { .. } => Err("No link is open.".into()),
-    }
+    only(matches!(model.front.phase, Phase::Open { .. } | Phase::Opening { .. }), "No link is open.")
 }
 
 fn has_others(model: &Model) -> Ready {
-    if model.others.is_empty() { Err("No other device is open.".into()) } else { Ok(()) }
+    only(!model.others.is_empty(), "No other device is open.")
 }
 
 fn has_changes(model: &Model) -> Ready {
     settings_idle(model)?;
     let has = model.front.settings.unit().is_some_and(|unit| !unit.edits().is_empty());
-    if has { Ok(()) } else { Err("No setting was edited.".into()) }
+    only(has, "No setting was edited.")
 }

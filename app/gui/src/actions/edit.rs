@@ -2,10 +2,9 @@
 
 use egui::Key;
 
-use super::{Action, Keys, Ready, connected, ctrl};
+use super::{Action, Keys, Ready, connected, ctrl, only};
 use crate::command::Command;
-use crate::model::Model;
-use crate::model::general::Sheet;
+use crate::model::{Model, Sheet};
 
 pub(super) const ACTIONS: &[Action] = &[
     entry!(Edit 9 "edit.find-setting", "Find a Setting…", "Goes to General Settings and to its search field.",
@@ -18,5 +17,5 @@ pub(super) const ACTIONS: &[Action] = &[
 
 fn has_edits(model: &Model) -> Ready {
     let has = model.front.settings.unit().is_some_and(|unit| !unit.edits().is_empty() || unit.has_typed());
-    if has { Ok(()) } else { Err("No setting was edited.".into()) }
+    only(has, "No setting was edited.")
 }

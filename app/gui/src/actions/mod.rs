@@ -35,7 +35,7 @@ macro_rules! entry {
 
 /// A row of the Help menu that opens a page.
 macro_rules! page {
-    ($id:literal, $title:expr, $keys:expr, $page:expr, $help:literal) => {
+    ($id:literal: $title:expr, $keys:expr, $page:expr, $help:literal) => {
         $crate::actions::Action {
             id: $id,
             title: $title,
@@ -242,8 +242,13 @@ fn always(_: &Model) -> Ready {
     Ok(())
 }
 
+/// Ready where something holds, else with the reason why not.
+fn only(holds: bool, why: impl Into<Cow<'static, str>>) -> Ready {
+    holds.then_some(()).ok_or_else(|| why.into())
+}
+
 fn connected(model: &Model) -> Ready {
-    if model.is_connected() { Ok(()) } else { Err("No controller is connected.".into()) }
+    only(model.is_connected(), "No controller is connected.")
 }
 
 /// A controller is connected and no other work with its settings runs.
@@ -259,12 +264,9 @@ fn settings_idle(model: &Model) -> Ready {
 }
 
 /// The MCL screen is shown.
-#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 fn on_mcl(model: &Model) -> Ready {
-    match model.screen {
-        Screen::MclEditor => Ok(()),
-        _ => Err("This is for MCL programs. Go to the MCL Editor first.".into()),
-    }
+    let elsewhere = "This is for MCL programs. Go to the MCL Editor first.";
+    only(model.screen == Screen::MclEditor, elsewhere)
 }
 
 const fn on_mcl_key(modifiers: Modifiers, key: Key) -> Keys {

@@ -2,10 +2,9 @@
 
 use egui::{Key, Modifiers};
 
-use super::{Action, Keys, Ready, always, ctrl, ctrl_shift, in_text_key, on_mcl, on_mcl_key};
+use super::{Action, Keys, Ready, always, ctrl, ctrl_shift, in_text_key, on_mcl, on_mcl_key, only};
 use crate::command::Command;
-use crate::mcl::panel::Tab;
-use crate::mcl::{Editor, MclAction};
+use crate::mcl::{Editor, MclAction, Tab};
 use crate::model::Model;
 
 const CTRL: Modifiers = Modifiers::COMMAND;
@@ -24,14 +23,14 @@ macro_rules! row {
 
 /// One row for something that is on or off.
 macro_rules! switch {
-    ($id:literal, $title:literal, $keys:expr, $action:expr, $is_on:expr, $help:literal) => {
+    ($option:ident $id:literal, $title:literal, $action:ident, $help:literal) => {
         entry!(View 4 $id, $title, $help,
-            $keys, on_mcl, |_| Command::Mcl($action), on $is_on)
+            Keys::None, on_mcl, |_| Command::Mcl(MclAction::$action), on |model| model.mcl.options.$option)
     };
 }
 
 macro_rules! example {
-    ($index:literal, $id:literal, $title:literal, $help:literal) => {
+    ($index:literal $id:literal, $title:literal, $help:literal) => {
         row!(File 1, $id, $title, Keys::None, always, MclAction::Example($index), $help)
     };
 }
@@ -48,38 +47,13 @@ pub(super) const FILE: &[Action] = &[
         on_mcl_key(CTRL, Key::Tab), on_mcl, |model| Command::Mcl(MclAction::Front(model.mcl.neighbour(true)))),
     entry!(File 0 "file.previous-program", "Previous MCL Program", "Puts the previous tab in front.",
         on_mcl_key(CTRL_SHIFT, Key::Tab), on_mcl, |model| Command::Mcl(MclAction::Front(model.mcl.neighbour(false)))),
-    example!(
-        0,
-        "file.example-hello",
-        "Example: Hello",
-        "Says time, battery and temperature on the USB stream."
-    ),
-    example!(1, "file.example-blink", "Example: Blink", "Switches an output on and off."),
-    example!(2, "file.example-ramp", "Example: Ramp", "Ramps motor 1 up and down."),
-    example!(
-        3,
-        "file.example-there-and-back",
-        "Example: There and Back",
-        "Turns motor 1 by counts of its encoder."
-    ),
-    example!(
-        4,
-        "file.example-keys",
-        "Example: Drive by Keys",
-        "Drives both motors by letters from the terminal."
-    ),
-    example!(
-        5,
-        "file.example-melody",
-        "Example: Table of Steps",
-        "Plays a table of duties and times on motor 1."
-    ),
-    example!(
-        6,
-        "file.example-eeprom",
-        "Example: Starts in EEPROM",
-        "Counts its own starts in the user EEPROM."
-    ),
+    example!(0 "file.example-hello", "Example: Hello", "Says time, battery and temperature on the USB stream."),
+    example!(1 "file.example-blink", "Example: Blink", "Switches an output on and off."),
+    example!(2 "file.example-ramp", "Example: Ramp", "Ramps motor 1 up and down."),
+    example!(3 "file.example-there-and-back", "Example: There and Back", "Turns motor 1 by counts of its encoder."),
+    example!(4 "file.example-keys", "Example: Drive by Keys", "Drives both motors by letters from the terminal."),
+    example!(5 "file.example-melody", "Example: Table of Steps", "Plays a table of duties and times on motor 1."),
+    example!(6 "file.example-eeprom", "Example: Starts in EEPROM", "Counts its own starts in the user EEPROM."),
 ];
 
 pub(super) const EDIT: &[Action] = &[
@@ -115,30 +89,9 @@ pub(super) const EDIT: &[Action] = &[
 ];
 
 pub(super) const VIEW: &[Action] = &[
-    switch!(
-        "view.hidden",
-        "Hidden Characters",
-        Keys::None,
-        MclAction::ToggleHidden,
-        |model| model.mcl.options.hidden,
-        "Shows spaces, tabs, line ends and characters that nobody sees in the MCL program."
-    ),
-    switch!(
-        "view.current-line",
-        "Highlight Current Line",
-        Keys::None,
-        MclAction::ToggleCurrentLine,
-        |model| model.mcl.options.current_line,
-        "Highlights the line of the caret."
-    ),
-    switch!(
-        "view.folding",
-        "Folding Lines",
-        Keys::None,
-        MclAction::ToggleFolding,
-        |model| model.mcl.options.folding,
-        "Shows beside the text what can be folded away."
-    ),
+    switch!(hidden "view.hidden", "Hidden Characters", ToggleHidden, "Shows spaces, tabs, line ends and characters that nobody sees in the MCL program."),
+    switch!(current_line "view.current-line", "Highlight Current Line", ToggleCurrentLine, "Highlights the line of the caret."),
+    switch!(folding "view.folding", "Folding Lines", ToggleFolding, "Shows beside the text what can be folded away."),
     row!(View 4, "view.fold", "Fold or Unfold Block", in_text_key(CTRL, Key::OpenBracket), on_mcl, MclAction::ToggleFoldHere, "Folds the block of the caret away, or brings it back."),
     row!(View 4, "view.fold-all", "Fold All", Keys::None, on_mcl, MclAction::FoldAll, "Folds every block away."),
     row!(View 4, "view.unfold-all", "Unfold All", Keys::None, on_mcl, MclAction::UnfoldAll, "Brings every block back."),
@@ -163,26 +116,20 @@ fn shows(editor: &Editor, tab: Tab) -> bool {
 
 fn can_undo(model: &Model) -> Ready {
     on_mcl(model)?;
-    if model.mcl.front().text.can_undo() { Ok(()) } else { Err("There is nothing to undo.".into()) }
+    only(model.mcl.front().text.can_undo(), "There is nothing to undo.")
 }
 
 fn can_redo(model: &Model) -> Ready {
     on_mcl(model)?;
-    if model.mcl.front().text.can_redo() { Ok(()) } else { Err("There is nothing to redo.".into()) }
+    only(model.mcl.front().text.can_redo(), "There is nothing to redo.")
 }
 
 fn has_bookmarks(model: &Model) -> Ready {
     on_mcl(model)?;
-    match model.mcl.front().bookmarks.is_empty() {
-        true => Err("The program has no bookmarks. Toggle Bookmark sets one.".into()),
-        false => Ok(()),
-    }
+    only(!model.mcl.front().bookmarks.is_empty(), "The program has no bookmarks. Toggle Bookmark sets one.")
 }
 
 fn has_problems(model: &Model) -> Ready {
     on_mcl(model)?;
-    match model.mcl.front().findings.problems.is_empty() {
-        true => Err("The program has no errors and no warnings.".into()),
-        false => Ok(()),
-    }
+    only(!model.mcl.front().findings.problems.is_empty(), "The program has no errors and no warnings.")
 }

@@ -2,14 +2,13 @@
 
 use egui::{Key, ThemePreference};
 
-use super::{Action, Keys, Ready, always, ctrl, ctrl_shift};
+use super::{Action, Keys, Ready, always, ctrl, ctrl_shift, only};
 use crate::command::Command;
-use crate::model::Model;
-use crate::model::screen::Screen;
+use crate::model::{Model, Screen};
 
 /// A row for a screen: its title stands once, in [`Screen`].
 macro_rules! screen {
-    ($id:literal, $screen:ident, $key:ident, $help:literal) => {
+    ($screen:ident $id:literal, $key:ident, $help:literal) => {
         entry!(View 0 $id, Screen::$screen.title(), $help,
             ctrl(Key::$key), |model| there_is(model, Screen::$screen), |_| Command::Show(Screen::$screen),
             on |model| model.screen == Screen::$screen)
@@ -25,30 +24,15 @@ macro_rules! theme {
 }
 
 pub(super) const ACTIONS: &[Action] = &[
-    screen!(
-        "view.device-status",
-        DeviceStatus,
-        Num1,
-        "Indicators, events and what keeps the motors from running."
-    ),
-    screen!(
-        "view.general",
-        GeneralSettings,
-        Num2,
-        "The controller's settings: limits, inputs, pins, profiles."
-    ),
-    screen!("view.pwm", Pwm, Num3, "Drives the motors by duty and measures their top speed."),
-    screen!("view.velocity", Velocity, Num4, "Settings of the velocity loops, and driving by speed."),
-    screen!("view.position", Position, Num5, "Settings of the position loops, and driving to positions."),
-    screen!("view.mcl", MclEditor, Num6, "Programs that run in the controller."),
-    screen!("view.motion", Motion, Num7, "What moves a controller that is not driven from here."),
-    screen!("view.inputs", Inputs, Num8, "Analog inputs, switches and radio control of a Motion Mind."),
-    screen!(
-        "view.command-terminal",
-        Terminal,
-        Num9,
-        "Commands to a Motion Mind by hand, with what they mean."
-    ),
+    screen!(DeviceStatus "view.device-status", Num1, "Indicators, events and what keeps the motors from running."),
+    screen!(GeneralSettings "view.general", Num2, "The controller's settings: limits, inputs, pins, profiles."),
+    screen!(Pwm "view.pwm", Num3, "Drives the motors by duty and measures their top speed."),
+    screen!(Velocity "view.velocity", Num4, "Settings of the velocity loops, and driving by speed."),
+    screen!(Position "view.position", Num5, "Settings of the position loops, and driving to positions."),
+    screen!(MclEditor "view.mcl", Num6, "Programs that run in the controller."),
+    screen!(Motion "view.motion", Num7, "What moves a controller that is not driven from here."),
+    screen!(Inputs "view.inputs", Num8, "Analog inputs, switches and radio control of a Motion Mind."),
+    screen!(Terminal "view.command-terminal", Num9, "Commands to a Motion Mind by hand, with what they mean."),
     entry!(View 1 "view.palette", "Command Palette…", "Searches everything that can be done by name.",
         ctrl_shift(Key::P), always, |_| Command::OpenPalette),
     entry!(View 1 "view.world", "Simulated World", "Shows and hides the loads, batteries, switches and faults of a simulated controller.",
@@ -56,8 +40,8 @@ pub(super) const ACTIONS: &[Action] = &[
     entry!(View 1 "view.traffic", "Traffic", "Shows and hides every transaction on the wire, decoded, with its bytes.",
         ctrl(Key::T), always, |_| Command::ToggleTraffic, on |model| model.front.traffic.open),
     entry!(View 1 "view.pause-traffic", "Pause the Traffic", "Stops and continues the recording of transactions; the link goes on.",
-        Keys::None, shows_traffic, |model| Command::PauseTraffic(!model.front.traffic.log.is_paused()),
-        on |model| model.front.traffic.log.is_paused()),
+        Keys::None, shows_traffic, |model| Command::PauseTraffic(!model.front.traffic.log.paused),
+        on |model| model.front.traffic.log.paused),
     entry!(View 1 "view.clear-history", "Clear the Event History", "Empties the list of events on the Device Status screen.",
         Keys::None, always, |_| Command::ClearHistory),
     theme!("view.theme-system", "Theme as the System", System, "Light or dark as the desktop has it."),
@@ -75,24 +59,15 @@ pub(super) const ACTIONS: &[Action] = &[
 
 /// Whether the controller in front has a screen.
 fn shows_traffic(model: &Model) -> Ready {
-    if model.front.traffic.open { Ok(()) } else { Err("The traffic is not shown.".into()) }
+    only(model.front.traffic.open, "The traffic is not shown.")
 }
 
 fn there_is(model: &Model, screen: Screen) -> Ready {
-    match model.front.screens().contains(&screen) {
-        true => Ok(()),
-        false => Err(format!(
-            "A controller like the {} has no such screen as it is set.",
-            model.front.family().name()
-        )
-        .into()),
-    }
+    let name = model.front.family().name();
+    let why = format!("A controller like the {name} has no such screen as it is set.");
+    only(model.front.screens().contains(&screen), why)
 }
 
 fn has_world(model: &Model) -> Ready {
-    if model.front.worlds.is_some() {
-        Ok(())
-    } else {
-        Err("The controller in front is not a simulated one.".into())
-    }
+    only(model.front.worlds.is_some(), "The controller in front is not a simulated one.")
 }

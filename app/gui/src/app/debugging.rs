@@ -13,8 +13,7 @@ use crate::debugger::names::TextId;
 use crate::debugger::state::Source;
 use crate::graph::MarkKind;
 use crate::mcl::{DocId, Document, MclAction};
-use crate::model::ConnectionId;
-use crate::model::screen::Screen;
+use crate::model::{ConnectionId, Screen};
 
 /// The answer to an action comes within some milliseconds; the frame that shows it is drawn then, not with the next samples.
 const SOON: Duration = Duration::from_millis(12);

@@ -1,20 +1,15 @@
 //! Links as the window opens, brings to the front and ends them.
 
-use brushwork_link::Failure;
-use brushwork_link::device::{PollRate, Request};
-use brushwork_link::transport::{ConnectTarget, TargetError};
+use brushwork_link::transport::TargetError;
+use brushwork_link::{ConnectTarget, Failure, PollRate, Request};
 use crossbeam_channel::TryRecvError;
 use egui::Context;
 
 use super::{App, OPENING_INTERVAL, waker};
-use crate::family;
-use crate::links;
-use crate::model::devices::Choice;
-use crate::model::link::{Effect, LinkView};
-use crate::model::message::Gravity;
-use crate::model::{Connection, ConnectionId, Phase, place_of};
+use crate::model::{Choice, Connection, ConnectionId, Effect, Gravity, LinkView, Phase, place_of};
 use crate::parts::OpenLink;
 use crate::tune::model::Afterwards;
+use crate::{family, links};
 
 impl App {
     /// Connects to what is chosen in the device list.
@@ -25,10 +20,7 @@ impl App {
             }
             Choice::Simulated | Choice::Port(_) | Choice::Typed => None,
         };
-        let target = match &chosen {
-            Some(target) => target.parse(),
-            None => self.model.devices.target(),
-        };
+        let target = chosen.as_ref().map_or_else(|| self.model.devices.target(), |target| target.parse());
         let typed = chosen.unwrap_or_else(|| self.model.devices.typed.trim().to_owned());
         self.connect_to(&typed, target);
     }
@@ -86,7 +78,7 @@ impl App {
     }
 
     fn opened(&mut self, id: ConnectionId, opened: OpenLink, ctx: &Context) {
-        let ports = self.model.devices.ports().to_vec();
+        let ports = self.model.devices.ports.to_vec();
         self.links.entry(id).opening = None;
         // A connection that was given up meanwhile: the link is closed again by being dropped.
         let Some(connection) = self.model.connection_mut(id) else { return };

@@ -2,15 +2,12 @@
 
 use brushwork_core::keep::Store;
 use brushwork_core::session::firmware::LoaderPlace;
-use brushwork_link::device::{DeviceHandle, Request};
-use brushwork_link::settings::SettingsImage;
-use brushwork_link::transport::ConnectTarget;
+use brushwork_link::{ConnectTarget, DeviceHandle, Request, SettingsImage};
 use egui::{Context, ViewportCommand};
 
 use super::App;
 use crate::family_action::Host;
-use crate::model::screen::Screen;
-use crate::model::{ConnectionId, Model};
+use crate::model::{ConnectionId, Model, Screen};
 
 impl Host for App {
     fn model(&mut self) -> &mut Model {
@@ -38,7 +35,7 @@ impl Host for App {
     }
 
     fn loader_place(&mut self, target: &ConnectTarget) -> LoaderPlace {
-        self.parts.opener.loader_place(target, self.model.devices.ports())
+        self.parts.opener.loader_place(target, &self.model.devices.ports)
     }
 }
 

@@ -2,17 +2,15 @@
 
 use std::path::Path;
 
-use brushwork_link::Failure;
-use brushwork_link::device::{ArmScope, Request};
+use brushwork_link::{ArmScope, Failure, Request};
 use brushwork_script::image;
 use brushwork_script::mcl::compile;
 use egui::{Context, ViewportCommand};
 
 use super::App;
 use crate::mcl::MclAction;
-use crate::model::jobs::Owner;
-use crate::model::screen::Screen;
 use crate::model::script::Source;
+use crate::model::{Owner, Screen};
 
 impl App {
     /// Does what is asked of the MCL editor. What opens or asks something shows its screen.
@@ -109,7 +107,7 @@ impl App {
         match self.model.front.script.begin(download, source) {
             Some(job) => {
                 if !self.start_for(self.model.front.id(), Owner::Script, job) {
-                    self.model.front.script.not_begun();
+                    self.model.front.script.forget();
                 }
             }
             None => self.model.messages.warn("A download runs already. Wait for it or cancel it."),

@@ -1,16 +1,11 @@
 //! Work with settings that the window asks of the device threads: whole, of the control loops, of inputs, and command by
 //! command. Whatever writes has a backup made first.
 
-use brushwork_link::device::Request;
+use brushwork_link::{Request, SettingsImage};
 
 use super::App;
-use crate::model::ConnectionId;
-use crate::model::jobs::Owner;
-use crate::model::loop_settings::Column;
-use crate::model::screen::Screen;
-use crate::model::settings::{SettingsAction, UnitSettings};
 use crate::model::traffic::Transact;
-use brushwork_link::settings::SettingsImage;
+use crate::model::{Column, ConnectionId, Owner, Screen, SettingsAction, UnitSettings};
 
 impl App {
     /// Starts or ends work with the settings, on the device thread.
@@ -80,7 +75,7 @@ impl App {
         if let Some(job) = self.model.front.general_view().begin_clamp_test()
             && !self.start_for(self.model.front.id(), Owner::ClampTest, job)
         {
-            self.model.front.general.clamp_test_not_begun();
+            self.model.front.general.clamp.forget_job();
         }
     }
 

@@ -1,20 +1,14 @@
 //! Guided tuning: its jobs one after the other, its gains into RAM and back, its reports on the disk.
 
 use super::App;
-use crate::model::ConnectionId;
-use crate::model::drawer::Tab;
-use crate::model::jobs::Owner;
-use crate::model::link::Arming;
 use crate::model::loop_settings::key;
-use crate::tune::files;
+use crate::model::{Arming, ConnectionId, Owner, Tab};
 use crate::tune::registers::image;
-use crate::tune::sequence::{Next, Origin};
-use crate::tune::{Loop, TuneAction};
+use crate::tune::{Loop, Next, Origin, TuneAction, files};
 use brushwork_core::keep::TrialKeeper;
 use brushwork_core::tune::file;
 use brushwork_core::tune::law::AnyRegisters;
-use brushwork_link::device::Request;
-use brushwork_link::settings::{SettingValue, SettingsImage};
+use brushwork_link::{Request, SettingValue, SettingsImage};
 use brushwork_tuning::registers::RegisterTable as _;
 use brushwork_values::Motor;
 

@@ -22,8 +22,7 @@ pub fn debug_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let debug = &model.front.debug;
     let has_script = debug.view.as_ref().is_some_and(|view| view.code != 0);
     if has_script && debug.loaded().is_none() {
-        let color = Palette::of(ui).warning;
-        ui.add(Label::new(RichText::new(NO_NAMES).color(color)).wrap());
+        ui.add(Label::new(RichText::new(NO_NAMES).color(Palette::of(ui).warning)).wrap());
     }
     ui.separator();
     let height = ui.available_height().max(60.0);

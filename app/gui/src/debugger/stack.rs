@@ -8,8 +8,7 @@ use super::state::Debugging;
 use super::watches::remove_ui;
 use crate::command::{Command, Commands};
 use crate::theme::Palette;
-use crate::widgets::heading::heading_ui;
-use crate::widgets::text_field::text_field_ui;
+use crate::widgets::{heading_ui, text_field_ui};
 
 pub fn stack_ui(ui: &mut Ui, debug: &mut Debugging, commands: &mut Commands) {
     heading_ui(ui, "Call stack");
@@ -57,16 +56,16 @@ fn label_at(debug: &Debugging, at: u32) -> Option<&str> {
 fn breakpoints_ui(ui: &mut Ui, debug: &mut Debugging, commands: &mut Commands) {
     ui.horizontal(|ui| {
         heading_ui(ui, "Breakpoints");
-        if !debug.breakpoints_mut().is_empty() && ui.small_button("Clear all").clicked() {
+        if !debug.breakpoints.is_empty() && ui.small_button("Clear all").clicked() {
             commands.push(Command::Debug(DebugAction::ClearBreakpoints));
         }
     });
-    if debug.breakpoints_mut().is_empty() {
+    if debug.breakpoints.is_empty() {
         ui.weak("Click left of a line number, or press Ctrl+F8.");
     }
     let states = debug.view.as_ref().map(|view| view.breakpoints.clone()).unwrap_or_default();
     let mut gone = None;
-    for (line, terms) in debug.breakpoints_mut() {
+    for (line, terms) in &mut debug.breakpoints {
         let state = states.iter().find(|state| state.wanted.line == *line);
         ui.horizontal(|ui| {
             if remove_ui(ui, &format!("Remove breakpoint at line {line}")) {
@@ -101,8 +100,7 @@ fn breakpoints_ui(ui: &mut Ui, debug: &mut Debugging, commands: &mut Commands) {
             text_field_ui(ui, &mut terms.condition, &name, "if, e.g. i > 3");
         });
         if let Some(why) = &terms.wrong {
-            let color = Palette::of(ui).error;
-            ui.add(Label::new(RichText::new(why).color(color)).wrap());
+            ui.add(Label::new(RichText::new(why).color(Palette::of(ui).error)).wrap());
         }
     }
     if let Some(line) = gone {

@@ -86,7 +86,7 @@ pub struct Debugging {
     /// What is to be asked for in the next look.
     requests: Vec<Request>,
     /// Breakpoints as the editor had them, with what the user said about each.
-    breakpoints: BTreeMap<u32, Terms>,
+    pub breakpoints: BTreeMap<u32, Terms>,
     sent_breakpoints: Option<Vec<Breakpoint>>,
     pub watches: Vec<WatchRow>,
     expressions: Expressions,
@@ -273,10 +273,6 @@ impl Debugging {
     /// A register as it was when the script stood the time before.
     pub fn register_before(&self, id: RegisterId) -> Option<&Vec<u32>> {
         self.before.registers.get(&id)
-    }
-
-    pub fn breakpoints_mut(&mut self) -> &mut BTreeMap<u32, Terms> {
-        &mut self.breakpoints
     }
 
     /// Sets a place to a value, if both can be understood.

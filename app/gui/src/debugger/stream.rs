@@ -8,7 +8,7 @@ use super::terminal::{LineEnd, Terminal};
 use crate::command::{Command, Commands};
 use crate::model::Model;
 use crate::theme::Palette;
-use crate::widgets::text_field::keep_space;
+use crate::widgets::{choice_ui, keep_space};
 
 /// Streams of GETS and PUTS.
 const STREAMS: u32 = 5;
@@ -43,18 +43,13 @@ pub fn terminal_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 
 fn head_ui(ui: &mut Ui, terminal: &mut Terminal) {
     ui.horizontal_wrapped(|ui| {
-        let label = ui.label("Shows");
+        ui.label("Shows");
         let name = |stream: Option<u32>| {
             stream.map_or("all streams".to_owned(), |stream| format!("stream {stream}"))
         };
         let streams: Vec<Option<u32>> = std::iter::once(None).chain((0..STREAMS).map(Some)).collect();
-        let combo = ComboBox::from_id_salt("terminal stream").selected_text(name(terminal.stream));
-        let response = combo.show_ui(ui, |ui| {
-            for stream in streams {
-                ui.selectable_value(&mut terminal.stream, stream, name(stream));
-            }
-        });
-        response.response.labelled_by(label.id);
+        let list = ComboBox::from_id_salt("terminal stream");
+        choice_ui(ui, list, "Shows", &mut terminal.stream, streams, name);
         ui.checkbox(&mut terminal.hex, "Output in hex");
         if ui.button("Clear terminal").clicked() {
             terminal.clear();
@@ -64,22 +59,11 @@ fn head_ui(ui: &mut Ui, terminal: &mut Terminal) {
 
 fn input_ui(ui: &mut Ui, terminal: &mut Terminal, waiting: usize, commands: &mut Commands) {
     ui.horizontal(|ui| {
-        let label = ui.label("To stream");
-        let combo =
-            ComboBox::from_id_salt("terminal to").width(40.0).selected_text(terminal.to_stream.to_string());
-        let response = combo.show_ui(ui, |ui| {
-            for stream in 0..STREAMS {
-                ui.selectable_value(&mut terminal.to_stream, stream, stream.to_string());
-            }
-        });
-        response.response.labelled_by(label.id);
-        let combo = ComboBox::from_id_salt("line end").width(84.0).selected_text(terminal.line_end.name());
-        let response = combo.show_ui(ui, |ui| {
-            for end in LineEnd::ALL {
-                ui.selectable_value(&mut terminal.line_end, end, end.name());
-            }
-        });
-        response.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Line end"));
+        ui.label("To stream");
+        let list = ComboBox::from_id_salt("terminal to").width(40.0);
+        choice_ui(ui, list, "To stream", &mut terminal.to_stream, 0..STREAMS, |stream| stream.to_string());
+        let list = ComboBox::from_id_salt("line end").width(84.0);
+        choice_ui(ui, list, "Line end", &mut terminal.line_end, LineEnd::ALL, LineEnd::name);
         ui.checkbox(&mut terminal.hex_input, "Hex");
         let width = (ui.available_width() - 60.0).max(60.0);
         let hint = if terminal.hex_input { "48 65 6c 6c 6f" } else { "for GETS" };

@@ -6,9 +6,9 @@ use egui::{ComboBox, RichText, Ui};
 
 use super::action::DebugAction;
 use crate::command::{Command, Commands};
-use crate::model::Model;
-use crate::model::indicator::IndicatorState;
+use crate::model::{IndicatorState, Model};
 use crate::theme::Palette;
+use crate::widgets::choice_ui;
 
 pub fn toolbar_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     let debug = &model.front.debug;
@@ -59,19 +59,16 @@ pub fn toolbar_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
 /// How fast the simulated controller's time goes.
 fn pace_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     let Some(pace) = model.front.debug.pace else { return };
-    let label = ui.label("Time");
+    ui.label("Time");
     let hint = "How fast the simulated controller's time goes. Max lasts until the script is paused or ends. The graph \
                 keeps the clock of this computer, and the controller's own time-outs count its fast time: motors that \
                 the window drives may be stopped by them";
-    let combo = ComboBox::from_id_salt("pace").width(60.0).selected_text(pace.name());
-    let response = combo.show_ui(ui, |ui| {
-        for choice in [Pace::REAL, Pace::TEN, Pace::Max] {
-            if ui.selectable_label(choice == pace, choice.name()).clicked() {
-                commands.push(Command::Debug(DebugAction::Pace(choice)));
-            }
-        }
-    });
-    response.response.labelled_by(label.id).on_hover_text(hint);
+    let (list, mut chosen) = (ComboBox::from_id_salt("pace").width(60.0), pace);
+    let response = choice_ui(ui, list, "Time", &mut chosen, [Pace::REAL, Pace::TEN, Pace::Max], Pace::name);
+    if chosen != pace {
+        commands.push(Command::Debug(DebugAction::Pace(chosen)));
+    }
+    response.on_hover_text(hint);
 }
 
 /// Why the script is where it is.
@@ -79,8 +76,7 @@ pub fn reason_ui(ui: &mut Ui, model: &Model) {
     let Some(view) = &model.front.debug.view else { return };
     let palette = Palette::of(ui);
     ui.horizontal(|ui| {
-        let (rect, _) = ui.allocate_exact_size(egui::vec2(14.0, 16.0), egui::Sense::hover());
-        indicator_of(view.is_paused, view.is_running, &view.reason).paint(ui, rect.center(), 5.0);
+        indicator_of(view.is_paused, view.is_running, &view.reason).ui(ui, egui::vec2(14.0, 16.0), 5.0);
         let color = if view.is_paused { palette.warning } else { palette.text };
         ui.add(egui::Label::new(RichText::new(view.sentence()).strong().color(color)).truncate());
         let notes = [
@@ -88,7 +84,7 @@ pub fn reason_ui(ui: &mut Ui, model: &Model) {
             (view.is_paused && !view.world_frozen, "The motors go on as they were told."),
         ];
         for (_, note) in notes.iter().filter(|(holds, _)| *holds) {
-            ui.label(RichText::new(*note).color(palette.weak_text));
+            ui.weak(*note);
         }
     });
 }

@@ -9,7 +9,7 @@ use egui::{CollapsingHeader, ComboBox, Label, RichText, Sense, Ui};
 
 use super::state::{Debugging, RegisterGroup};
 use crate::theme::Palette;
-use crate::widgets::heading::heading_ui;
+use crate::widgets::{choice_ui, heading_ui};
 
 /// Elements of an array that are listed.
 const LISTED: u32 = 256;
@@ -49,13 +49,8 @@ pub fn values_ui(ui: &mut Ui, debug: &mut Debugging) {
 
 /// How numbers are written.
 pub fn show_ui(ui: &mut Ui, name: &str, show: &mut Show) {
-    let combo = ComboBox::from_id_salt(name).width(72.0).selected_text(show.name());
-    let response = combo.show_ui(ui, |ui| {
-        for choice in Show::ALL {
-            ui.selectable_value(show, choice, choice.name());
-        }
-    });
-    response.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, name));
+    let list = ComboBox::from_id_salt(name).width(72.0);
+    choice_ui(ui, list, name, show, Show::ALL, Show::name);
 }
 
 fn variables_ui(ui: &mut Ui, debug: &mut Debugging) {

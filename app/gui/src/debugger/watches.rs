@@ -7,8 +7,7 @@ use super::state::Debugging;
 use super::values::show_ui;
 use crate::command::{Command, Commands};
 use crate::theme::Palette;
-use crate::widgets::heading::heading_ui;
-use crate::widgets::text_field::text_field_ui;
+use crate::widgets::{heading_ui, text_field_ui};
 
 /// A column that has room for a watch and its form side by side.
 const WIDE: f32 = 300.0;
@@ -75,8 +74,7 @@ fn set_ui(ui: &mut Ui, debug: &mut Debugging, commands: &mut Commands) {
     match &debug.set_answer {
         Some(Ok(done)) => drop(ui.add(Label::new(done).wrap())),
         Some(Err(why)) => {
-            let color = Palette::of(ui).error;
-            ui.add(Label::new(RichText::new(why).color(color)).wrap());
+            ui.add(Label::new(RichText::new(why).color(Palette::of(ui).error)).wrap());
         }
         None => drop(
             ui.weak("Sets a variable, an element, a part (x.bit3) or a register while the script is paused."),

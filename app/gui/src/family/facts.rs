@@ -14,14 +14,9 @@ use brushwork_values::Motor;
 use super::known::Known;
 use super::own::Own;
 use super::words::{self, SettingsWords};
-use crate::model::drawer::Tab;
-use crate::model::help_page::HelpPage;
-use crate::model::indicator::{IndicatorInfo, IndicatorState, state_of};
-use crate::model::position::Position;
-use crate::model::pwm::Pwm;
-use crate::model::screen::Screen;
-use crate::model::simulated::Simulated;
-use crate::model::velocity::Velocity;
+use crate::model::{
+    HelpPage, IndicatorInfo, IndicatorState, Position, Pwm, Screen, Simulated, Tab, Velocity, state_of,
+};
 use crate::tune::Loop;
 
 /// What the window has to know of a family. What has a default is had by few.
@@ -309,6 +304,18 @@ pub struct Figures {
     pub digits: usize,
     /// Whether a Zero button goes with each.
     pub zero: bool,
+}
+
+impl Figures {
+    /// Rows, the width of their labels, and the letters and digits of their units and values.
+    pub const fn new(
+        rows: &'static [Figure],
+        label_width: f32,
+        (unit_letters, digits): (usize, usize),
+        zero: bool,
+    ) -> Self {
+        Self { rows, label_width, unit_letters, digits, zero }
+    }
 }
 
 /// One readout.

@@ -7,8 +7,7 @@
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
-use brushwork_link::FamilyRef;
-use brushwork_link::device::Channel;
+use brushwork_link::{Channel, FamilyRef};
 
 mod facts;
 mod known;

@@ -4,8 +4,7 @@ use std::any::Any;
 use std::fmt::Debug;
 use std::time::Duration;
 
-use brushwork_link::Failure;
-use brushwork_link::device::{Event, Request, Sample};
+use brushwork_link::{Event, Failure, Request, Sample};
 
 use super::known::Known;
 

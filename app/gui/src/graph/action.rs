@@ -1,8 +1,6 @@
 //! What a person can do with the graph, one word for each: keys, buttons, menus and the palette all end here.
 
-use super::live::LiveGraph;
-use super::marks::MarkKind;
-use super::trigger::TriggerMode;
+use super::{LiveGraph, MarkKind, TriggerMode};
 
 /// One thing to do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,46 +46,6 @@ pub enum GraphAction {
 }
 
 impl GraphAction {
-    /// All of them, for menus and the palette.
-    pub const ALL: [Self; 36] = [
-        Self::TogglePause,
-        Self::BackToLive,
-        Self::Earlier,
-        Self::Later,
-        Self::Oldest,
-        Self::ShowAll,
-        Self::ZoomIn,
-        Self::ZoomOut,
-        Self::FitAll,
-        Self::FitSelected,
-        Self::ScaleCloser,
-        Self::ScaleWider,
-        Self::ZeroUp,
-        Self::ZeroDown,
-        Self::ClearAll,
-        Self::RestoreCleared,
-        Self::ToggleCursors,
-        Self::OtherCursor,
-        Self::CursorLeft,
-        Self::CursorRight,
-        Self::Trigger(TriggerMode::Off),
-        Self::Trigger(TriggerMode::Auto),
-        Self::Trigger(TriggerMode::Normal),
-        Self::Trigger(TriggerMode::Single),
-        Self::RearmTrigger,
-        Self::NextTrigger,
-        Self::AddNote,
-        Self::KeepRun,
-        Self::ForgetRuns,
-        Self::ToggleLarge,
-        Self::RecordCsv,
-        Self::RecordCompact,
-        Self::StopRecording,
-        Self::ExportCsv,
-        Self::ExportPng,
-        Self::ExportSvg,
-    ];
-
     /// In a menu.
     pub const fn title(self) -> &'static str {
         match self {
@@ -160,7 +118,7 @@ impl LiveGraph {
             GraphAction::ToggleLarge => self.large = !self.large,
             GraphAction::RecordCsv => self.record(brushwork_core::recording::Form::Csv),
             GraphAction::RecordCompact => self.record(brushwork_core::recording::Form::Compact),
-            GraphAction::StopRecording => self.stop_recording(),
+            GraphAction::StopRecording => self.end_recording(""),
             GraphAction::ExportCsv => self.export(super::files::Export::Csv),
             GraphAction::ExportPng => self.export(super::files::Export::Png),
             GraphAction::ExportSvg => self.export(super::files::Export::Svg),
@@ -218,11 +176,50 @@ impl LiveGraph {
 mod tests {
     use super::*;
 
+    const ALL: [GraphAction; 36] = [
+        GraphAction::TogglePause,
+        GraphAction::BackToLive,
+        GraphAction::Earlier,
+        GraphAction::Later,
+        GraphAction::Oldest,
+        GraphAction::ShowAll,
+        GraphAction::ZoomIn,
+        GraphAction::ZoomOut,
+        GraphAction::FitAll,
+        GraphAction::FitSelected,
+        GraphAction::ScaleCloser,
+        GraphAction::ScaleWider,
+        GraphAction::ZeroUp,
+        GraphAction::ZeroDown,
+        GraphAction::ClearAll,
+        GraphAction::RestoreCleared,
+        GraphAction::ToggleCursors,
+        GraphAction::OtherCursor,
+        GraphAction::CursorLeft,
+        GraphAction::CursorRight,
+        GraphAction::Trigger(TriggerMode::Off),
+        GraphAction::Trigger(TriggerMode::Auto),
+        GraphAction::Trigger(TriggerMode::Normal),
+        GraphAction::Trigger(TriggerMode::Single),
+        GraphAction::RearmTrigger,
+        GraphAction::NextTrigger,
+        GraphAction::AddNote,
+        GraphAction::KeepRun,
+        GraphAction::ForgetRuns,
+        GraphAction::ToggleLarge,
+        GraphAction::RecordCsv,
+        GraphAction::RecordCompact,
+        GraphAction::StopRecording,
+        GraphAction::ExportCsv,
+        GraphAction::ExportPng,
+        GraphAction::ExportSvg,
+    ];
+
     #[test]
     fn every_action_has_a_title_of_its_own() {
-        let mut titles: Vec<_> = GraphAction::ALL.iter().map(|action| action.title()).collect();
+        let mut titles: Vec<_> = ALL.iter().map(|action| action.title()).collect();
         titles.sort_unstable();
         titles.dedup();
-        assert_eq!(titles.len(), GraphAction::ALL.len());
+        assert_eq!(titles.len(), ALL.len());
     }
 }

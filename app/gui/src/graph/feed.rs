@@ -3,9 +3,8 @@
 use brushwork_link::device::{Drive, DriveCommand, Event, Reading, Sample};
 use brushwork_values::Motor;
 
-use super::live::LiveGraph;
-use super::marks::MarkKind;
 use super::series::NOT_READ;
+use super::{LiveGraph, MarkKind};
 
 impl LiveGraph {
     /// Takes a sample of the unit that is looked at.

@@ -7,11 +7,9 @@ use egui::{
 };
 
 use super::action::GraphAction;
-use super::live::LiveGraph;
 use super::picture::draw::color_of;
-use super::sheet::Sheet;
-use crate::theme;
-use crate::theme::Palette;
+use super::{LiveGraph, Sheet};
+use crate::theme::{self, Palette};
 use crate::widgets::readout::NO_VALUE;
 
 const ROW_HEIGHT: f32 = 20.0;

@@ -3,13 +3,11 @@
 
 use super::files::GraphFiles;
 use super::history::DEFAULT_ROWS;
-use super::marks::{Mark, MarkKind};
 use super::rate::Rate;
 use super::runs::{Align, Run};
 use super::series::GAP;
-use super::sheet::Sheet;
-use super::track::{ChannelInfo, Track};
-use super::trigger::{TriggerMode, TriggerSource};
+use super::track::ChannelInfo;
+use super::{Mark, MarkKind, Sheet, Track, TriggerMode, TriggerSource};
 
 /// A channel that was read in each of this many samples and then in as many not has lost data.
 const MISSED_SAMPLES: u64 = 20;
@@ -165,11 +163,6 @@ impl LiveGraph {
         self.live.track.history.push_gap(time_s);
         self.record_gap(time_s);
         self.live.trigger.lost();
-    }
-
-    /// Samples now come about every `interval_s`.
-    pub fn set_interval(&mut self, interval_s: f64) {
-        self.rate.ask(interval_s);
     }
 
     /// Leaves a mark at a time of the link's clock.

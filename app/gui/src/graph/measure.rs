@@ -37,9 +37,9 @@ pub fn measure_ui(ui: &mut Ui, graph: &mut LiveGraph) {
         Grid::new("measures").num_columns(HEADS.len()).min_row_height(ROW - 1.0).striped(true).show(
             ui,
             |ui| {
-                let palette = Palette::of(ui);
+                let _palette = Palette::of(ui);
                 for head in HEADS {
-                    ui.label(RichText::new(head).small().color(palette.weak_text));
+                    ui.label(RichText::new(head).small().weak());
                 }
                 ui.end_row();
                 for channel in shown {
@@ -78,7 +78,7 @@ fn times_ui(ui: &mut Ui, graph: &mut LiveGraph) {
         if delta_s != 0.0 {
             text += &format!("   1/(B − A)  {} Hz", figure(1.0 / delta_s.abs(), 3));
         }
-        ui.label(RichText::new(text).small());
+        ui.small(text);
     });
 }
 

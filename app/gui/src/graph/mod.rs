@@ -39,3 +39,7 @@ pub use scale::Scale;
 pub use sheet::Sheet;
 pub use trace::{Columns, Trace, View};
 pub use track::{ChannelInfo, Track};
+
+pub use cursors::Cursors;
+pub use marks::Mark;
+pub use trigger::{TriggerMode, TriggerSource};

@@ -3,8 +3,7 @@
 use brushwork_link::device::PollRate;
 use egui::{Align, Layout, Rect, Ui, UiBuilder};
 
-use super::live::LiveGraph;
-use super::{list, measure, plot, toolbar};
+use super::{LiveGraph, list, measure, plot, toolbar};
 use crate::command::Commands;
 
 /// Width of the list of channels.

@@ -9,13 +9,10 @@ use egui::{
 };
 
 use super::action::GraphAction;
-use super::cursors::Cursors;
-use super::live::LiveGraph;
 use super::picture::draw::{self, Scene};
 use super::picture::frame::{AXIS_WIDTH, Frame};
 use super::picture::{axes, paint};
-use super::sheet::Sheet;
-use super::trigger::TriggerMode;
+use super::{Cursors, LiveGraph, Sheet, TriggerMode};
 use crate::theme::Palette;
 
 /// What the keys do while the plot has focus.
@@ -175,10 +172,7 @@ fn grip_at(graph: &LiveGraph, frame: &Frame, at: Pos2) -> Option<Grip> {
         };
         return sheet.shown().into_iter().rev().find(touched).map(Grip::Zero);
     }
-    if at.x < plot.left() {
-        return Some(Grip::Axis);
-    }
-    plot.contains(at).then_some(Grip::Time)
+    if at.x < plot.left() { Some(Grip::Axis) } else { plot.contains(at).then_some(Grip::Time) }
 }
 
 fn drag_ui(ui: &Ui, graph: &mut LiveGraph, response: &Response, frame: &Frame) {

@@ -2,11 +2,9 @@
 
 use std::cell::{Cell, RefCell};
 
-use super::marks::MarkKind;
 use super::memo::Memo;
-use super::sheet::Sheet;
-use super::track::Track;
-use super::trigger::{TriggerSettings, TriggerSource, first_crossing_s};
+use super::trigger::{TriggerSettings, first_crossing_s};
+use super::{MarkKind, Sheet, Track, TriggerSource};
 
 /// What of a run and of the present picture lies at the same place.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

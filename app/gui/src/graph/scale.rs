@@ -19,11 +19,6 @@ impl Scale {
         Self { low: -reach, high: reach }
     }
 
-    /// From zero to `reach`.
-    pub const fn from_zero(reach: f64) -> Self {
-        Self { low: 0.0, high: reach }
-    }
-
     /// Grows until `value` fits.
     pub fn include(&mut self, value: f64) {
         if !value.is_finite() || (self.low..=self.high).contains(&value) {
@@ -126,6 +121,11 @@ mod tests {
 
     use super::*;
 
+    /// A scale from zero to `reach`.
+    fn from_zero(reach: f64) -> Scale {
+        Scale { low: 0.0, high: reach }
+    }
+
     #[test]
     fn a_scale_grows_to_the_next_round_number_and_does_not_shrink() {
         let mut scale = Scale::around_zero(1000.0);
@@ -133,14 +133,14 @@ mod tests {
         assert_eq!(scale, Scale::around_zero(2000.0));
         scale.include(3.0);
         assert_eq!(scale, Scale::around_zero(2000.0));
-        let mut volts = Scale::from_zero(20.0);
+        let mut volts = from_zero(20.0);
         volts.include(24.1);
-        assert_eq!(volts, Scale::from_zero(50.0));
+        assert_eq!(volts, from_zero(50.0));
     }
 
     #[test]
     fn a_value_below_zero_on_a_scale_from_zero_still_fits() {
-        let mut amps = Scale::from_zero(10.0);
+        let mut amps = from_zero(10.0);
         amps.include(-3.0);
         assert!(amps.low <= -3.0 && amps.high >= 10.0, "{amps:?}");
     }
@@ -148,8 +148,8 @@ mod tests {
     #[test]
     fn labels_have_the_digits_they_need_and_no_more() {
         assert_eq!(Scale::around_zero(100.0).decimals(), 0);
-        assert_eq!(Scale::from_zero(1.0).decimals(), 3);
-        assert_eq!(Scale::from_zero(20.0).decimals(), 1);
+        assert_eq!(from_zero(1.0).decimals(), 3);
+        assert_eq!(from_zero(20.0).decimals(), 1);
     }
 
     #[test]
@@ -157,8 +157,8 @@ mod tests {
         let scale = Scale::around_zero(100.0);
         assert_eq!(scale.shifted(0.5, 0.75), Scale { low: -150.0, high: 50.0 });
         assert_eq!(scale.zoomed(0.5, 0.5), Scale::around_zero(50.0));
-        assert_eq!(Scale::from_zero(8.0).stepped(false), Scale::from_zero(16.0));
-        assert_eq!(Scale::from_zero(8.0).stepped(true), Scale::from_zero(4.0));
+        assert_eq!(from_zero(8.0).stepped(false), from_zero(16.0));
+        assert_eq!(from_zero(8.0).stepped(true), from_zero(4.0));
         assert!(!Scale { low: 5.0, high: 5.0 }.is_sound() && !Scale::around_zero(f64::NAN).is_sound());
     }
 

@@ -205,18 +205,12 @@ impl Series {
 
     /// The value of a row still kept: a number, [`NOT_READ`] or [`GAP`].
     pub fn value(&self, row: u64) -> f64 {
-        if self.is_blank() {
-            return NOT_READ;
-        }
-        self.values.get(row)
+        if self.is_blank() { NOT_READ } else { self.values.get(row) }
     }
 
     /// How long before its row's time a value was read.
     pub fn behind_s(&self, row: u64) -> f64 {
-        if self.is_blank() {
-            return 0.0;
-        }
-        f64::from(self.behind.get(row)) * BEHIND_STEP_S
+        if self.is_blank() { 0.0 } else { f64::from(self.behind.get(row)) * BEHIND_STEP_S }
     }
 
     /// Merges the moments of whole blocks inside `rows`, and gives back what `rows` hold before and after those.

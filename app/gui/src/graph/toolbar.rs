@@ -17,8 +17,7 @@ use super::sheet::SPANS_S;
 use super::trigger::{Edge, TriggerMode, TriggerSettings, TriggerSource};
 use crate::command::{Command, Commands};
 use crate::theme::Palette;
-use crate::widgets::numeric::Numeric;
-use crate::widgets::text_field::text_field_ui;
+use crate::widgets::{Numeric, choice_ui, text_field_ui};
 
 /// Width of what opens under a button.
 const MENU_WIDTH: f32 = 330.0;
@@ -55,14 +54,14 @@ pub fn status_ui(ui: &mut Ui, graph: &LiveGraph, poll: PollRate) {
     ui.horizontal(|ui| {
         ui.set_min_height(16.0);
         let text = rate_text(graph, poll);
-        ui.label(RichText::new(text).small().color(palette.weak_text));
+        ui.label(RichText::new(text).small().weak());
         let rest = [
             graph.sheet().trigger_state().map(str::to_owned),
             graph.files.recording_text().map(|text| format!("Recording {text}")),
             graph.files.loading_text(),
         ];
         for text in rest.into_iter().flatten() {
-            ui.label(RichText::new("·").small().color(palette.weak_text));
+            ui.label(RichText::new("·").small().weak());
             ui.add(egui::Label::new(RichText::new(text).small().color(palette.text)).truncate());
         }
     });
@@ -93,10 +92,6 @@ fn button_ui(ui: &mut Ui, graph: &mut LiveGraph, text: &str, hint: &str, action:
     response
 }
 
-fn name(ui: &Ui, response: &Response, label: &str) {
-    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(label));
-}
-
 fn follow_ui(ui: &mut Ui, graph: &mut LiveGraph) {
     let away = graph.sheet().is_held() || graph.opened.is_some();
     let (icon, text, hint, action) = match away {
@@ -116,22 +111,16 @@ fn follow_ui(ui: &mut Ui, graph: &mut LiveGraph) {
 
 fn time_ui(ui: &mut Ui, graph: &mut LiveGraph) {
     let minus = button_ui(ui, graph, "−", "Shows more time (−, or the wheel)", GraphAction::ZoomOut);
-    name(ui, &minus, "Zoom out");
-    let span_s = graph.sheet().span_s();
-    let combo =
-        ComboBox::from_id_salt("span").width(66.0).height(480.0).selected_text(axes::span_text(span_s));
-    let response = combo.show_ui(ui, |ui| {
-        for span in SPANS_S {
-            if ui.selectable_label(span == span_s, axes::span_text(span)).clicked() {
-                graph.sheet_mut().set_span_s(span);
-            }
-        }
-    });
-    let response =
-        response.response.on_hover_text("How much time is in view; 10 s has divisions of one second");
-    name(ui, &response, "Time in view");
+    ui.ctx().accesskit_node_builder(minus.id, |node| node.set_label("Zoom out"));
+    let mut span_s = graph.sheet().span_s();
+    let list = ComboBox::from_id_salt("span").width(66.0).height(480.0);
+    let response = choice_ui(ui, list, "Time in view", &mut span_s, SPANS_S, axes::span_text);
+    if span_s != graph.sheet().span_s() {
+        graph.sheet_mut().set_span_s(span_s);
+    }
+    response.on_hover_text("How much time is in view; 10 s has divisions of one second");
     let plus = button_ui(ui, graph, "+", "Shows less time (+, or the wheel)", GraphAction::ZoomIn);
-    name(ui, &plus, "Zoom in");
+    ui.ctx().accesskit_node_builder(plus.id, |node| node.set_label("Zoom in"));
 }
 
 /// A button that opens a small panel, which stays open while it is used.
@@ -142,7 +131,7 @@ fn menu(ui: &mut Ui, icon: Icon, label: &str, contents: impl FnOnce(&mut Ui)) {
         let height = (ui.ctx().content_rect().height() * 0.7).max(200.0);
         ScrollArea::vertical().max_height(height).show(ui, contents);
     });
-    name(ui, &response, label);
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(label));
     put_icon(ui, &response, icon);
 }
 
@@ -229,15 +218,8 @@ fn numeric_ui(
 ) {
     ui.horizontal(|ui| {
         crate::widgets::label::fixed_label_ui(ui, label, 120.0);
-        Numeric {
-            name: &format!("Trigger {}", label.to_lowercase()),
-            unit,
-            range,
-            decimals,
-            step,
-            width: 110.0,
-        }
-        .ui(ui, value);
+        Numeric::new(&format!("Trigger {}", label.to_lowercase()), unit, range, (decimals, step, 110.0))
+            .ui(ui, value);
     });
 }
 
@@ -342,8 +324,7 @@ fn marks_ui(ui: &mut Ui, graph: &mut LiveGraph) {
 }
 
 fn heading_ui(ui: &mut Ui, text: &str) {
-    let color = Palette::of(ui).weak_text;
-    ui.label(RichText::new(text).small().color(color));
+    ui.label(RichText::new(text).small().weak());
 }
 
 fn open_ui(ui: &mut Ui, graph: &mut LiveGraph) {
@@ -410,27 +391,15 @@ fn runs_ui(ui: &mut Ui, graph: &mut LiveGraph) {
 
 /// How often the signals are read.
 fn rate_ui(ui: &mut Ui, poll: PollRate, commands: &mut Commands) {
-    let every = |milliseconds| PollRate::Every(Duration::from_millis(milliseconds));
-    let rates = [
-        every(500),
-        every(100),
-        every(50),
-        every(20),
-        every(10),
-        every(5),
-        every(2),
-        every(1),
-        PollRate::Fastest,
-    ];
-    let combo = ComboBox::from_id_salt("rate").width(104.0).selected_text(poll_text(poll));
-    let response = combo.show_ui(ui, |ui| {
-        for rate in rates {
-            if ui.selectable_label(rate == poll, poll_text(rate)).clicked() {
-                commands.push(Command::Poll(rate));
-            }
-        }
-    });
-    name(ui, &response.response.on_hover_text("How often the signals are read"), "Sampling");
+    let rates = [500, 100, 50, 20, 10, 5, 2, 1].map(|every| PollRate::Every(Duration::from_millis(every)));
+    let mut chosen = poll;
+    let list = ComboBox::from_id_salt("rate").width(104.0);
+    let response =
+        choice_ui(ui, list, "Sampling", &mut chosen, rates.into_iter().chain([PollRate::Fastest]), poll_text);
+    if chosen != poll {
+        commands.push(Command::Poll(chosen));
+    }
+    response.on_hover_text("How often the signals are read");
 }
 
 fn poll_text(poll: PollRate) -> String {

@@ -119,12 +119,7 @@ pub struct Trace {
 }
 
 impl Trace {
-    /// The lines of one channel in the columns of a view.
-    pub fn of(history: &History, channel: usize, columns: &Columns) -> Self {
-        Self::remembering(history, channel, columns, &mut Memo::default())
-    }
-
-    /// The same with what is remembered of that channel of that history.
+    /// The lines of one channel in the columns of a view, with what is remembered of that channel of that history.
     pub fn remembering(history: &History, channel: usize, columns: &Columns, memo: &mut Memo) -> Self {
         let series = history.channel(channel);
         let mut trace = Self::default();
@@ -146,11 +141,6 @@ impl Trace {
         }
         trace.lines.retain(|line| !line.is_empty());
         trace
-    }
-
-    /// Points of all lines together.
-    pub fn points(&self) -> usize {
-        self.lines.iter().map(Vec::len).sum()
     }
 
     /// Minimum and maximum of many samples. The last value before them counts too, so that a column always reaches
@@ -201,6 +191,18 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+
+    impl Trace {
+        /// The lines of one channel, with nothing remembered.
+        fn of(history: &History, channel: usize, columns: &Columns) -> Self {
+            Self::remembering(history, channel, columns, &mut Memo::default())
+        }
+
+        /// Points of all lines together.
+        fn points(&self) -> usize {
+            self.lines.iter().map(Vec::len).sum()
+        }
+    }
     use crate::graph::series::{GAP, NOT_READ};
 
     /// Irregular times: mostly 10 ms apart, at times a long pause.

@@ -2,7 +2,6 @@
 
 use egui::{Atom, Button, Panel, Role, ScrollArea, Ui, WidgetInfo};
 
-use super::note_ui;
 use crate::model::help::Help;
 
 const LIST_WIDTH: f32 = 262.0;
@@ -22,7 +21,7 @@ pub fn list_ui(ui: &mut Ui, entries: &[Entry], help: &mut Help) {
     let found: Vec<&Entry> = entries.iter().filter(fits).collect();
     let frame = egui::Frame::new().inner_margin(egui::Margin { right: 8, ..Default::default() });
     Panel::left("entries").resizable(false).exact_size(LIST_WIDTH).frame(frame).show(ui, |ui| {
-        note_ui(ui, &format!("{} of {}", found.len(), entries.len()));
+        ui.weak(format!("{} of {}", found.len(), entries.len()));
         let height = ui.spacing().interact_size.y;
         ScrollArea::vertical().auto_shrink([false; 2]).show_rows(ui, height, found.len(), |ui, shown| {
             for entry in &found[shown] {

@@ -6,7 +6,7 @@ use brushwork_script::mcl::reference::sections;
 use egui::{Label, Ui};
 
 use super::list::{Entry, list_ui};
-use super::{note_ui, scrolled_ui};
+use super::scrolled_ui;
 use crate::model::help::Help;
 
 /// One entry of the reference: how it is found, and what it says line by line.
@@ -30,13 +30,12 @@ pub fn mcl_ui(ui: &mut Ui, help: &mut Help) {
     });
     list_ui(ui, entries, help);
     let chosen = pages.iter().find(|page| Some(page.entry.key.as_str()) == help.entry.as_deref());
-    scrolled_ui(ui, |ui| match chosen {
+    scrolled_ui(ui, |ui| {
+        match chosen {
         Some(page) => page_ui(ui, page),
-        None => note_ui(
-            ui,
-            "Choose a word at the left. In a syntax line braces stand round what may be left out; they are not typed. \
-             Upper and lower case are the same.",
-        ),
+        None => drop(ui.weak("Choose a word at the left. In a syntax line braces stand round what may be left out; they are not typed. \
+             Upper and lower case are the same.")),
+    }
     });
 }
 
@@ -60,7 +59,7 @@ fn pages() -> Vec<Page> {
 
 fn page_ui(ui: &mut Ui, page: &Page) {
     ui.heading(&page.title);
-    note_ui(ui, page.section);
+    ui.weak(page.section);
     ui.add_space(4.0);
     for line in &page.lines {
         ui.add(Label::new(line).wrap());

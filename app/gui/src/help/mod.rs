@@ -1,12 +1,11 @@
 //! The window of help: first steps, the references drawn from the tables, shortcuts, and what Brushwork is.
 
-use egui::{Context, Frame, Margin, Rect, RichText, ScrollArea, Ui, Window, vec2};
+use egui::{Context, Frame, Margin, Rect, ScrollArea, Ui, Window, vec2};
 
 use super::model::Model;
 use super::model::help::{Help, pages};
 use super::model::help_page::HelpPage;
 use super::screens::face;
-use super::theme::Palette;
 use super::widgets::text_field::text_field_ui;
 
 pub mod list;
@@ -64,10 +63,4 @@ pub(super) fn scrolled_ui(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
     ScrollArea::vertical().auto_shrink([false; 2]).show(ui, |ui| {
         Frame::new().inner_margin(Margin::symmetric(8, 2)).show(ui, contents);
     });
-}
-
-/// A paragraph in the weak colour.
-pub(super) fn note_ui(ui: &mut Ui, text: &str) {
-    let color = Palette::of(ui).weak_text;
-    ui.label(RichText::new(text).color(color));
 }

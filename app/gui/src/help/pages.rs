@@ -1,10 +1,8 @@
 //! The pages of running text, and the list of shortcuts.
 
-use egui::{RichText, Ui};
+use egui::Ui;
 
-use super::note_ui;
-use crate::actions;
-use crate::actions::{Keys, Menu};
+use crate::actions::{self, Keys, Menu};
 use crate::widgets::label::fixed_label_ui;
 
 /// Numbered, in the order a person does them.
@@ -64,7 +62,7 @@ pub fn first_steps_ui(ui: &mut Ui) {
     ui.heading("First steps");
     for (index, (title, text)) in FIRST_STEPS.iter().enumerate() {
         ui.add_space(6.0);
-        ui.label(RichText::new(format!("{}. {title}", index + 1)).strong());
+        ui.strong(format!("{}. {title}", index + 1));
         ui.label(*text);
     }
 }
@@ -103,12 +101,12 @@ fn table_ui(ui: &mut Ui, title: &str, rows: &[(&str, &str, &str)]) {
         return;
     }
     ui.add_space(4.0);
-    ui.label(RichText::new(title).strong());
+    ui.strong(title);
     for (keys, what, help) in rows {
         ui.horizontal(|ui| {
             fixed_label_ui(ui, keys, KEYS_WIDTH);
             fixed_label_ui(ui, what, WHAT_WIDTH);
-            note_ui(ui, help);
+            ui.weak(*help);
         });
     }
 }
@@ -128,10 +126,7 @@ pub fn about_ui(ui: &mut Ui) {
     ));
     ui.label("Speaks packet serial with the MCP and RoboClaw families, firmware generations 1 to 4.");
     ui.add_space(6.0);
-    note_ui(
-        ui,
-        "The simulated controllers follow the manuals and what public clients put on the wire. Where the manuals are \
-         silent, a behaviour is assumed; the packet serial reference marks each such place.",
-    );
-    note_ui(ui, "Names of makers and products belong to their owners. This program is not theirs.");
+    ui.weak("The simulated controllers follow the manuals and what public clients put on the wire. Where the manuals are \
+         silent, a behaviour is assumed; the packet serial reference marks each such place.");
+    ui.weak("Names of makers and products belong to their owners. This program is not theirs.");
 }

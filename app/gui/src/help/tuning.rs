@@ -1,6 +1,6 @@
 //! The page of help on tuning: how the tuner works, what it refuses, and how to go on from what it proposes.
 
-use egui::{RichText, Ui};
+use egui::Ui;
 
 const HOW: [(&str, &str); 7] = [
     (
@@ -85,7 +85,7 @@ pub fn tuning_ui(ui: &mut Ui) {
     ui.heading("How the tuner works");
     for (title, text) in HOW {
         ui.add_space(6.0);
-        ui.label(RichText::new(title).strong());
+        ui.strong(title);
         ui.label(text);
     }
     list_ui(ui, "What the figures mean", &FIGURES);
@@ -103,7 +103,7 @@ fn list_ui(ui: &mut Ui, title: &str, rows: &[(&str, &str)]) {
     ui.heading(title);
     for (name, text) in rows {
         ui.add_space(4.0);
-        ui.label(RichText::new(*name).strong());
+        ui.strong(*name);
         ui.label(*text);
     }
 }

@@ -7,8 +7,7 @@ use egui::text::{CCursor, CCursorRange, LayoutJob, TextFormat};
 use egui::text_selection::accesskit_text::update_accesskit_for_text_widget;
 use egui::{Color32, Pos2, Response, Role, Ui, WidgetInfo};
 
-use super::document::Document;
-use super::paint::Metrics;
+use super::{Document, Metrics};
 
 /// Tells what the field is, what its caret stands in, and what of it is in view. `origin` is where row 0 begins.
 pub fn describe(

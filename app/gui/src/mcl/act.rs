@@ -2,14 +2,9 @@
 
 use egui::{Context, ViewportCommand};
 
-use super::action::MclAction;
-use super::caret::Caret;
-use super::complete::Completion;
-use super::document::Document;
-use super::editor::Editor;
 use super::examples::EXAMPLES;
-use super::panel::Tab;
-use super::sheet::{PathField, Sheet};
+use super::sheet::PathField;
+use super::{Caret, Completion, Document, Editor, MclAction, Sheet, Tab};
 use crate::model::message::Gravity;
 
 impl Editor {
@@ -51,7 +46,6 @@ impl Editor {
             MclAction::ToggleFolding => self.toggle_folding(),
             MclAction::Zoom(percent) => self.options.set_zoom(percent),
             MclAction::ShowPanel(tab) => self.panel.press(tab),
-            MclAction::HidePanel => self.panel.open = false,
             MclAction::Check => self.check_now(),
             MclAction::GoToLine => self.open_sheet(Sheet::GoToLine(String::new())),
             MclAction::Rename => self.ask_rename(),

@@ -1,8 +1,7 @@
 //! What a person can ask of the editor.
 
 use super::disk::{Encoding, LineEnds};
-use super::doc_id::DocId;
-use super::panel::Tab;
+use super::{DocId, Tab};
 
 /// One action. What is done to a program is done to the one in front.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,7 +74,6 @@ pub enum MclAction {
     SetLineEnds(LineEnds),
     /// Shows a part of the panel, or hides the panel if it is shown.
     ShowPanel(Tab),
-    HidePanel,
     AcceptSheet,
     DismissSheet,
     CloseUnsaved,

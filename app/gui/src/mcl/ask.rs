@@ -2,10 +2,9 @@
 
 use egui::{Align2, Context, Key, Modifiers, Rect, Ui, Window, vec2};
 
-use super::action::MclAction;
-use super::editor::Editor;
 use super::saving::{mcl_files, pdf_files};
-use super::sheet::{PathField, Sheet};
+use super::sheet::PathField;
+use super::{Editor, MclAction, Sheet};
 use crate::files::FileKind;
 use crate::widgets::text_field::text_field_ui;
 

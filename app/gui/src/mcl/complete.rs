@@ -2,9 +2,7 @@
 
 use brushwork_script::mcl::index::{Completions, Entry, Index};
 
-use super::buffer::Kind;
-use super::caret::Caret;
-use super::document::Document;
+use super::{Caret, Document, Kind};
 
 /// Letters after which the list opens by itself.
 const LETTERS: usize = 2;

@@ -5,14 +5,12 @@ use std::path::PathBuf;
 use brushwork_script::diagnostic::Severity;
 use egui::Vec2;
 
-use super::buffer::{Buffer, Edit, Kind};
-use super::caret::Caret;
 use super::composing::Composing;
 use super::disk::{Format, LineEnds, Stamp};
-use super::doc_id::DocId;
 use super::fold::Folds;
 use super::marks::Marks;
 use super::problems::Findings;
+use super::{Buffer, Caret, DocId, Edit, Kind};
 
 /// One open program.
 #[derive(Debug)]

@@ -2,15 +2,12 @@
 
 use std::path::PathBuf;
 
-use super::complete::Completion;
-use super::doc_id::DocId;
-use super::document::Document;
 use super::find::Find;
 use super::journal::Left;
 use super::panel::Panel;
 use super::printer::{Printing, Spooler};
-use super::sheet::Sheet;
 use super::threads::Services;
+use super::{Completion, DocId, Document, Sheet};
 use crate::model::message::Gravity;
 
 /// What is shown of a program besides its text.

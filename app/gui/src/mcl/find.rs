@@ -4,9 +4,7 @@ use std::ops::Range;
 
 use regex::{NoExpand, Regex, RegexBuilder};
 
-use super::buffer::Kind;
-use super::caret::Caret;
-use super::document::Document;
+use super::{Caret, Document, Kind};
 
 /// What is looked for.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

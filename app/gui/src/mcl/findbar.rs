@@ -2,9 +2,7 @@
 
 use egui::{Button, Key, Label, Modifiers, Role, TextEdit, Ui, WidgetInfo};
 
-use super::action::MclAction;
-use super::editor::Editor;
-use crate::theme::Palette;
+use super::{Editor, MclAction};
 use crate::widgets::text_field::keep_space;
 
 const FIELD_WIDTH: f32 = 220.0;
@@ -113,7 +111,6 @@ fn named(ui: &mut Ui, reads: &str, name: &str) -> egui::Response {
 }
 
 fn told_ui(ui: &mut Ui, reported: &str) {
-    let color = Palette::of(ui).weak_text;
-    let label = Label::new(egui::RichText::new(reported).color(color)).truncate().selectable(false);
+    let label = Label::new(egui::RichText::new(reported).weak()).truncate().selectable(false);
     ui.add_sized(egui::vec2(TOLD_WIDTH, ui.spacing().interact_size.y), label).on_hover_text(reported);
 }

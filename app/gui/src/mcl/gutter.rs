@@ -2,10 +2,8 @@
 
 use egui::{Align2, FontId, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
-use super::action::MclAction;
-use super::document::Document;
 use super::editor::Options;
-use super::paint::Metrics;
+use super::{Document, MclAction, Metrics};
 use crate::theme::Palette;
 
 /// Room for a breakpoint or bookmark.

@@ -2,12 +2,10 @@
 
 use egui::{Event, EventFilter, Id, ImeEvent, Key, Modifiers, Ui};
 
-use super::buffer::Kind;
-use super::caret::Caret;
-use super::complete::Completion;
 use super::composing::Composing;
-use super::document::{Document, Reveal};
+use super::document::Reveal;
 use super::moves::{Move, moved};
+use super::{Caret, Completion, Document, Kind};
 
 /// The keys that stay with the text instead of moving the focus. Esc leaves the text, unless it has a list of words to close.
 pub const fn filter(list_is_open: bool) -> EventFilter {

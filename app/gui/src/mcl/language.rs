@@ -6,11 +6,9 @@ use std::sync::Arc;
 use brushwork_script::mcl::index::{self, Help, SyntaxHint, syntax_at};
 use brushwork_script::text::Span;
 
-use super::buffer::Kind;
-use super::caret::Caret;
 use super::check::{Checked, check};
-use super::document::Document;
 use super::moves::word_at;
+use super::{Caret, Document, Kind};
 
 /// What is shown where the pointer rests.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -4,9 +4,8 @@ use egui::{Align2, FontId, Role, ScrollArea, Sense, Stroke, TextStyle, Ui, Widge
 
 use brushwork_script::diagnostic::Severity;
 
-use super::action::MclAction;
-use super::document::Document;
 use super::problems::Problem;
+use super::{Document, MclAction};
 use crate::model::indicator::IndicatorState;
 use crate::theme::Palette;
 
@@ -23,7 +22,7 @@ pub fn list_ui(ui: &mut Ui, document: &Document, actions: &mut Vec<MclAction>) {
             (false, _) => "Not checked yet.",
         };
         ui.add_space(4.0);
-        ui.label(egui::RichText::new(text).color(Palette::of(ui).weak_text));
+        ui.weak(text);
         return;
     }
     ui.spacing_mut().item_spacing.y = 0.0;

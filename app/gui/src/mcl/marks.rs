@@ -26,10 +26,7 @@ impl Marks {
 
     /// Sets a mark, or takes it away. True if it is set now.
     pub fn toggle(&mut self, line: usize) -> bool {
-        if self.lines.remove(&line) {
-            return false;
-        }
-        self.lines.insert(line)
+        if self.lines.remove(&line) { false } else { self.lines.insert(line) }
     }
 
     pub fn clear(&mut self) {

@@ -55,5 +55,12 @@ pub use editor::Editor;
 pub use screen::screen_ui;
 pub use view::has_keyboard;
 
+pub use buffer::{Buffer, Edit, Kind};
+pub use caret::Caret;
+pub use complete::Completion;
+pub use paint::Metrics;
+pub use panel::Tab;
+pub use sheet::Sheet;
+
 #[cfg(test)]
 mod tests;

@@ -4,8 +4,7 @@ use std::ops::Range;
 
 use unicode_segmentation::{GraphemeCursor, UnicodeSegmentation as _};
 
-use super::buffer::Buffer;
-use super::caret::Caret;
+use super::{Buffer, Caret};
 
 /// A way to go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,9 +2,8 @@
 
 use egui::{Frame, Label, Margin, Stroke, Ui, vec2};
 
-use super::action::MclAction;
 use super::document::OnDisk;
-use super::editor::Editor;
+use super::{Editor, MclAction};
 use crate::model::indicator::IndicatorState;
 use crate::theme::Palette;
 
@@ -43,8 +42,7 @@ fn bar_ui(ui: &mut Ui, text: &str, choices: &[(&str, MclAction)], actions: &mut 
     let frame = Frame::new().stroke(Stroke::new(1.0, palette.warning)).corner_radius(4.0);
     frame.inner_margin(Margin::symmetric(8, 3)).show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
-            let (rect, _) = ui.allocate_exact_size(vec2(16.0, 16.0), egui::Sense::hover());
-            IndicatorState::Warning.paint(ui, rect.center(), 5.0);
+            IndicatorState::Warning.ui(ui, vec2(16.0, 16.0), 5.0);
             ui.add(Label::new(text).wrap());
             for (reads, action) in choices {
                 if ui.button(*reads).clicked() {

@@ -70,17 +70,16 @@ pub fn hover_ui(ui: &mut Ui, hover: &Hover, value: Option<&str>) {
     if !hover.problems.is_empty() {
         ui.separator();
     }
-    let color = Palette::of(ui).weak_text;
     ui.label(RichText::new(&help.title).strong().monospace());
     if !help.syntax.is_empty() {
-        ui.label(RichText::new(&help.syntax).monospace());
+        ui.monospace(&help.syntax);
     }
     ui.label(&help.text);
     if let Some(value) = value {
-        ui.label(RichText::new(format!("Now: {value}")).strong());
+        ui.strong(format!("Now: {value}"));
     }
     for fact in &help.facts {
-        ui.label(RichText::new(fact).color(color).small());
+        ui.label(RichText::new(fact).weak().small());
     }
 }
 

@@ -1,11 +1,10 @@
 //! Pages to the system's printer, by its print command: `lp` or `lpr`. Where there is neither, pages go to a PDF file alone.
 
-use std::env;
 use std::ffi::OsStr;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::thread;
+use std::{env, thread};
 
 use brushwork_link::Failure;
 use crossbeam_channel::{Receiver, Sender, bounded};

@@ -1,14 +1,12 @@
 //! The arm switch and what the script does: starting a script can move motors, so it needs arming like any other motion.
 
 use brushwork_link::device::ArmScope;
-use brushwork_link::transport::Stream;
 use brushwork_plant::world::ScriptRun;
-use egui::{ComboBox, Label, ProgressBar, RichText, Ui};
+use egui::{Label, ProgressBar, RichText, Ui};
 
 use crate::command::{Command, Commands};
-use crate::model::Model;
-use crate::model::indicator::IndicatorState;
-use crate::model::link::Arming;
+use crate::model::{Arming, IndicatorState, Model};
+use crate::screens::stream::stream_ui;
 use crate::theme::Palette;
 use crate::widgets::arm_switch::arm_switch_ui;
 
@@ -22,7 +20,7 @@ pub fn runbar_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
             commands.push(if armed { Command::Disarm } else { Command::Arm(ArmScope::Script) });
         }
     });
-    if let Some((fraction, text)) = model.front.script.progress() {
+    if let Some((fraction, text)) = model.front.script.job.progress() {
         ui.add(ProgressBar::new(fraction).desired_width(120.0));
         if ui.button("Cancel download").clicked() {
             commands.push(Command::CancelDownload);
@@ -40,13 +38,13 @@ pub fn runbar_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
 pub fn reasons_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     let link = &model.front.link;
     if model.is_connected() && link.stream.is_none() {
-        stream_ui(ui, commands);
+        stream_ui(ui, "port.", commands);
     }
     for refusal in &link.refusals {
-        reason_ui(ui, IndicatorState::Error, &refusal.to_string());
+        IndicatorState::Error.line_ui(ui, &refusal.to_string());
     }
     if link.arming.is_armed_for(ArmScope::Script) {
-        link.warnings.iter().for_each(|warning| reason_ui(ui, IndicatorState::Warning, warning));
+        link.warnings.iter().for_each(|warning| IndicatorState::Warning.line_ui(ui, warning));
     }
 }
 
@@ -66,38 +64,13 @@ fn reported(model: &Model, armed: bool) -> String {
         Some(ScriptRun::Ended { line }) => format!("The script ended in line {line}. "),
         Some(ScriptRun::Faulted { line, what }) => format!("The script broke off in line {line}: {what}. "),
         Some(_) => String::new(),
-        None if front.watch.script_runs() == Some(true) => "A script was started. ".to_owned(),
+        None if front.watch.script_runs == Some(true) => "A script was started. ".to_owned(),
         None => String::new(),
     };
-    let can = match (armed, front.script.on_board()) {
+    let can = match (armed, &front.script.on_board) {
         (true, _) => "Start Script runs the program, which can move motors. Keep clear; Esc stops.",
         (false, None) => "Download sends the program in front to the controller; it does not start it.",
         (false, Some(_)) => "Arm to start the script: it can move motors.",
     };
     format!("{runs}{can}")
-}
-
-/// Asked for when the port does not tell by its name which of the controller's streams it is.
-fn stream_ui(ui: &mut Ui, commands: &mut Commands) {
-    ui.horizontal(|ui| {
-        let label = ui.label("This port goes to the controller's");
-        let list = ComboBox::from_id_salt("mcl stream").selected_text("choose …");
-        let shown = list.show_ui(ui, |ui| {
-            for stream in Stream::ALL {
-                if ui.selectable_label(false, stream.label()).clicked() {
-                    commands.push(Command::SetStream(stream));
-                }
-            }
-        });
-        shown.response.labelled_by(label.id);
-        ui.label("port.");
-    });
-}
-
-fn reason_ui(ui: &mut Ui, state: IndicatorState, text: &str) {
-    ui.horizontal(|ui| {
-        let (rect, _) = ui.allocate_exact_size(egui::vec2(18.0, 18.0), egui::Sense::hover());
-        state.paint(ui, rect.center(), 6.0);
-        ui.add(Label::new(text).wrap());
-    });
 }

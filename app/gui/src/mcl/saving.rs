@@ -5,13 +5,12 @@ use std::path::PathBuf;
 use egui::Context;
 
 use super::disk::encode;
-use super::doc_id::DocId;
 use super::document::OnDisk;
-use super::editor::{Editor, Exit};
+use super::editor::Exit;
 use super::files::Task;
-use super::print;
 use super::printer::Job;
-use super::sheet::{PathField, Sheet};
+use super::sheet::PathField;
+use super::{DocId, Editor, Sheet, print};
 use crate::files::FileKind;
 use crate::model::message::Gravity;
 

@@ -2,17 +2,15 @@
 
 use egui::{CentralPanel, Frame, Panel as Area, Ui};
 
-use super::action::MclAction;
 use super::ask::ask_ui;
 use super::findbar::findbar_ui;
-use super::list;
 use super::notices::notices_ui;
-use super::panel::Tab;
 use super::runbar::{reasons_ui, runbar_ui};
 use super::strip::strip_ui;
 use super::tabs::tabs_ui;
 use super::toolbar::toolbar_ui;
 use super::view::view_ui;
+use super::{MclAction, Tab, list};
 use crate::command::{Command, Commands};
 use crate::debugger;
 use crate::model::Model;

@@ -8,12 +8,11 @@ use egui::Context;
 
 use super::check::Checker;
 use super::disk::{self, Loaded};
-use super::doc_id::DocId;
-use super::document::{Document, OnDisk};
-use super::editor::Editor;
+use super::document::OnDisk;
 use super::files::{Done, Files, SaveError, Task};
 use super::journal::Kept;
 use super::threads::Services;
+use super::{DocId, Document, Editor};
 use crate::model::message::Gravity;
 use brushwork_core::keep::today;
 

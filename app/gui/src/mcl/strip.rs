@@ -5,10 +5,10 @@ use brushwork_script::mcl::index::SyntaxHint;
 use egui::text::{LayoutJob, TextFormat};
 use egui::{Align, ComboBox, FontId, Layout, Role, Sense, Ui, WidgetInfo, vec2};
 
-use super::action::MclAction;
 use super::disk::{Encoding, LineEnds};
-use super::document::Document;
+use super::{Document, MclAction};
 use crate::theme::Palette;
+use crate::widgets::choice_ui;
 
 const HEIGHT: f32 = 26.0;
 /// Room for the place of the caret.
@@ -31,30 +31,22 @@ pub fn strip_ui(ui: &mut Ui, document: &Document, actions: &mut Vec<MclAction>) 
 
 fn encoding_ui(ui: &mut Ui, document: &Document, actions: &mut Vec<MclAction>) {
     let now = document.format.encoding;
-    let list = ComboBox::from_id_salt("mcl encoding").selected_text(now.title()).width(64.0);
-    let shown = list.show_ui(ui, |ui| {
-        for encoding in Encoding::ALL {
-            if ui.selectable_label(encoding == now, encoding.title()).clicked() {
-                actions.push(MclAction::SetEncoding(encoding));
-            }
-        }
-    });
-    ui.ctx().accesskit_node_builder(shown.response.id, |node| node.set_label("Encoding"));
-    shown.response.on_hover_text("How the file's letters are written");
+    let (list, mut chosen) = (ComboBox::from_id_salt("mcl encoding").width(64.0), now);
+    let shown = choice_ui(ui, list, "Encoding", &mut chosen, Encoding::ALL, Encoding::title);
+    if chosen != now {
+        actions.push(MclAction::SetEncoding(chosen));
+    }
+    shown.on_hover_text("How the file's letters are written");
 }
 
 fn ends_ui(ui: &mut Ui, document: &Document, actions: &mut Vec<MclAction>) {
     let now = document.format.ends;
-    let list = ComboBox::from_id_salt("mcl line ends").selected_text(now.title()).width(44.0);
-    let shown = list.show_ui(ui, |ui| {
-        for ends in LineEnds::ALL {
-            if ui.selectable_label(ends == now, ends.title()).clicked() {
-                actions.push(MclAction::SetLineEnds(ends));
-            }
-        }
-    });
-    ui.ctx().accesskit_node_builder(shown.response.id, |node| node.set_label("Line ends"));
-    shown.response.on_hover_text("How the file's lines end");
+    let (list, mut chosen) = (ComboBox::from_id_salt("mcl line ends").width(44.0), now);
+    let shown = choice_ui(ui, list, "Line ends", &mut chosen, LineEnds::ALL, LineEnds::title);
+    if chosen != now {
+        actions.push(MclAction::SetLineEnds(chosen));
+    }
+    shown.on_hover_text("How the file's lines end");
 }
 
 fn place_ui(ui: &mut Ui, document: &Document) {

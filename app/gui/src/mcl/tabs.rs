@@ -4,9 +4,7 @@ use egui::{
     Align2, Key, Rect, Response, Role, ScrollArea, Sense, Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2,
 };
 
-use super::action::MclAction;
-use super::document::Document;
-use super::editor::Editor;
+use super::{Document, Editor, MclAction};
 use crate::theme::Palette;
 
 const HEIGHT: f32 = 28.0;

@@ -3,11 +3,8 @@
 use proptest::prelude::*;
 use unicode_segmentation::UnicodeSegmentation as _;
 
-use super::buffer::{Buffer, Kind};
-use super::caret::Caret;
-use super::doc_id::DocId;
-use super::document::Document;
 use super::moves::{Move, byte_at_cell, cell_of, moved, word_at};
+use super::{Buffer, Caret, DocId, Document, Kind};
 
 /// Letters of one to four bytes, joined ones, line ends and blanks.
 const LETTERS: [&str; 14] =

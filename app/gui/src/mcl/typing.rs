@@ -2,11 +2,8 @@
 
 use std::ops::Range;
 
-use super::buffer::Kind;
-use super::caret::Caret;
-use super::document::Document;
-use super::moves;
-use super::moves::{Move, TAB_CELLS, indent_of, moved};
+use super::moves::{self, Move, TAB_CELLS, indent_of, moved};
+use super::{Caret, Document, Kind};
 
 /// One step of indent.
 const INDENT: &str = "    ";

@@ -10,14 +10,11 @@ use egui::{
     Ui, UiBuilder, Vec2, pos2, vec2,
 };
 
-use super::action::MclAction;
-use super::buffer::Buffer;
-use super::caret::Caret;
-use super::document::{Document, Reveal};
-use super::editor::{Editor, Options};
+use super::document::Reveal;
+use super::editor::Options;
 use super::moves::word_at;
-use super::paint::{Line, Metrics};
-use super::{access, gutter, input, popup, squiggle};
+use super::paint::Line;
+use super::{Buffer, Caret, Document, Editor, MclAction, Metrics, access, gutter, input, popup, squiggle};
 use crate::theme::Palette;
 use crate::widgets::text_field;
 

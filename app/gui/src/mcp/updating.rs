@@ -8,8 +8,7 @@ use egui::Context;
 use super::model::firmware::{FirmwareAction, Next};
 use crate::family_action::{FamilyAction, Host};
 use crate::frame::FRAME_INTERVAL;
-use crate::model::link::Arming;
-use crate::model::{ConnectionId, Phase};
+use crate::model::{Arming, ConnectionId, Phase};
 
 impl FamilyAction for FirmwareAction {
     fn act(&self, host: &mut dyn Host) -> Result<(), String> {
@@ -69,7 +68,7 @@ fn begin_update(host: &mut dyn Host) -> Result<(), String> {
     let model = host.model();
     let front = &mut model.front;
     let identity = front.link.identity().cloned().ok_or("Connect the controller first.")?;
-    let unit = UnitId::new(&identity, model.devices.ports());
+    let unit = UnitId::new(&identity, &model.devices.ports);
     let (id, stream) = (front.id(), front.link.stream);
     let job = front.mcp_mut().firmware.begin(&identity, stream, unit, store)?;
     if !host.request_of(id, Request::Job(job)) {

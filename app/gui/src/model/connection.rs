@@ -9,34 +9,25 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
 
-use brushwork_link::device::{ArmScope, Event, Identity, PollRate};
-use brushwork_link::settings::{SettingValue, SettingsImage};
-use brushwork_link::transport::ConnectTarget;
-use brushwork_plant::world::ScriptRun;
-use brushwork_plant::world::WorldView;
+use brushwork_link::{ArmScope, ConnectTarget, Event, Identity, PollRate, SettingValue, SettingsImage};
+use brushwork_plant::world::{ScriptRun, WorldView};
 
-use super::channels::graph_channels;
-use super::drawer::{Drawers, Tab};
-use super::general::{General, GeneralView};
+use super::drawer::Drawers;
 use super::generator::Generator;
-use super::history::History;
-use super::jobs::{Jobs, Owner};
-use super::link::{Arming, Effect, LinkView};
+use super::jobs::Jobs;
 use super::loop_settings::LoopView;
-use super::position::Position;
-use super::pwm::Pwm;
 use super::qpps::QppsPanel;
-use super::screen::Screen;
 use super::script::ScriptWork;
-use super::settings::Settings;
 use super::traffic::Traffic;
-use super::velocity::Velocity;
 use super::watch::Watch;
 use super::watched::said;
 use super::world::WorldPanel;
+use super::{
+    Arming, Effect, General, GeneralView, History, LinkView, Owner, Position, Pwm, Screen, Settings, Tab,
+    Velocity, graph_channels,
+};
 use crate::debugger::Debugging;
-use crate::family;
-use crate::family::{Family, Own, Sliders};
+use crate::family::{self, Family, Own, Sliders};
 use crate::graph::LiveGraph;
 use crate::tune::Tuning;
 
@@ -314,14 +305,11 @@ impl Connection {
     }
 
     /// Whether the event is about something that may have changed the controller's settings past [`Settings`].
-    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn changes_ram(&self, event: &Event) -> bool {
-        match event {
-            Event::Transacted { id, .. } => self.traffic.kept.is_sent(*id),
-            // A stop may have switched a loop off by a register.
-            Event::Stopped(_) => !self.family().has_loops(),
-            _ => false,
-        }
+        let is_sent = |id| self.traffic.kept.is_sent(id);
+        // A stop may have switched a loop off by a register.
+        let is_stop = matches!(event, Event::Stopped(_)) && !self.family().has_loops();
+        is_stop || matches!(event, Event::Transacted { id, .. } if is_sent(*id))
     }
 
     /// The settings with the screen that shows all of them.
@@ -380,7 +368,7 @@ impl Connection {
                 let ended = self.settings.take(event);
                 ended.map(|ended| self.general_view().take(ended)).unwrap_or_default()
             }
-            Owner::ClampTest => self.general.take_clamp_test(event),
+            Owner::ClampTest => self.general.clamp.take(event),
             Owner::Generator => said(
                 self.generator.take(event),
                 "The profile was played to its end. The motors were stopped.",
@@ -409,10 +397,7 @@ impl Connection {
     /// Whether the unit's script runs, as far as known. A simulated controller in this program tells; of others nothing is known but what went over
     /// this link, since no command asks for it.
     pub fn script_runs(&self) -> Option<bool> {
-        match self.script_line() {
-            Some(line) => Some(line.is_some()),
-            None => self.watch.script_runs(),
-        }
+        self.script_line().map_or(self.watch.script_runs, |line| Some(line.is_some()))
     }
 
     /// The line of the script that runs on a simulated unit; the outer `None` where nobody can tell.

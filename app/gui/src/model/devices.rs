@@ -2,12 +2,9 @@
 
 use super::connection::{Connection, ConnectionId, place_of};
 use super::simulated::Simulated;
-use crate::family;
-use crate::family::Family;
-use brushwork_link::Failure;
-use brushwork_link::FamilyChoice;
-use brushwork_link::device::Addresses;
-use brushwork_link::transport::{ConnectTarget, PortInfo, TargetError};
+use crate::family::{self, Family};
+use brushwork_link::transport::TargetError;
+use brushwork_link::{Addresses, ConnectTarget, Failure, FamilyChoice, PortInfo};
 
 /// The simulated controller that is always there.
 pub const SIMULATED: &str = "sim:mcp266";
@@ -34,7 +31,7 @@ pub enum Choice {
 /// The device list.
 #[derive(Clone, Debug)]
 pub struct Devices {
-    ports: Vec<PortInfo>,
+    pub ports: Vec<PortInfo>,
     pub listing_failure: Option<Failure>,
     pub choice: Choice,
     pub typed: String,
@@ -47,7 +44,7 @@ pub struct Devices {
     /// What the first row of the list simulates.
     pub simulated: Simulated,
     /// What was connected to before, newest first.
-    recent: Vec<String>,
+    pub recent: Vec<String>,
 }
 
 impl Default for Devices {
@@ -104,11 +101,6 @@ impl Devices {
         };
     }
 
-    /// Connections of before, newest first.
-    pub fn recent(&self) -> &[String] {
-        &self.recent
-    }
-
     pub fn set_recent(&mut self, recent: Vec<String>) {
         self.recent = recent;
         self.recent.truncate(RECENT_KEPT);
@@ -134,10 +126,6 @@ impl Devices {
 
     pub fn forget_recent(&mut self, target: &str) {
         self.recent.retain(|known| known != target);
-    }
-
-    pub fn ports(&self) -> &[PortInfo] {
-        &self.ports
     }
 
     /// The chosen port, while it is listed.

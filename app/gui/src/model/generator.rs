@@ -4,8 +4,7 @@ use brushwork_link::device::{ArmScope, Event, QueuedJob};
 use brushwork_values::Motor;
 
 use super::watched::{Unfinished, Watched};
-use brushwork_core::motion::player;
-use brushwork_core::motion::player::{JudgedStep, Played};
+use brushwork_core::motion::player::{self, JudgedStep, Played};
 use brushwork_core::motion::profile::{Leg, Mode, Pace, Profile, Reach, Shape, legs, total_time};
 
 /// The generator of one link.
@@ -15,7 +14,7 @@ pub struct Generator {
     profiles: [Profile; 3],
     /// Which motors play.
     pub motors: [bool; 2],
-    job: Watched<Played>,
+    pub job: Watched<Played>,
     /// What was played last, and where.
     played: Option<(Mode, Played)>,
     mode: Mode,
@@ -99,27 +98,10 @@ impl Generator {
         Ok(job)
     }
 
-    pub fn cancel(&self) {
-        self.job.cancel();
-    }
-
-    /// The job was not taken.
-    pub fn not_begun(&mut self) {
-        self.job.forget();
-    }
-
     /// Another unit, or none.
     pub fn forget(&mut self) {
         self.job.forget();
         self.played = None;
-    }
-
-    pub fn is_running(&self) -> bool {
-        self.job.is_running()
-    }
-
-    pub fn progress(&self) -> Option<(f32, &str)> {
-        self.job.progress()
     }
 
     /// The last two steps of each motor, if the screen's profile was the last that was played.

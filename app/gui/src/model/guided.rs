@@ -3,12 +3,10 @@
 use brushwork_link::device::{Channel, QueuedJob};
 use brushwork_values::Motor;
 
-use super::connection::Connection;
-use super::drawer::Tab;
 use super::generator::mode_of;
-use super::jobs::Owner;
+use super::loop_settings::QPPS;
 use super::position::{Seen, Travels};
-use super::screen::Screen;
+use super::{Connection, Owner, Screen, Tab};
 use brushwork_core::motion::profile::{Leg, Mode, Pace, Reach};
 
 /// What is asked for.
@@ -23,7 +21,7 @@ pub enum GuidedAction {
 impl Connection {
     /// Whether a job moves the motors; the sliders rest meanwhile.
     pub fn is_guided(&self) -> bool {
-        self.generator.is_running() || self.qpps.is_running() || self.tune.is_running()
+        self.generator.job.is_running() || self.qpps.job.is_running() || self.tune.is_running()
     }
 
     /// The legs of the profile that is set, or why there are none.
@@ -40,9 +38,9 @@ impl Connection {
         let nothing = || "A job runs already. Wait for it or cancel it.".to_owned();
         match action {
             GuidedAction::Cancel => {
-                self.generator.cancel();
-                self.qpps.cancel();
-                self.general.clamp.cancel();
+                self.generator.job.cancel();
+                self.qpps.job.cancel();
+                self.general.clamp.job.cancel();
                 Ok(None)
             }
             GuidedAction::MeasureQpps | GuidedAction::Play if self.is_guided() => Err(nothing()),
@@ -60,14 +58,14 @@ impl Connection {
 
     /// The job was not taken.
     pub fn guided_not_begun(&mut self) {
-        self.generator.not_begun();
-        self.qpps.not_begun();
+        self.generator.job.forget();
+        self.qpps.job.forget();
     }
 
     /// Puts what was measured into the settings of the PWM screen, where it is applied.
     pub fn take_over_qpps(&mut self, motor: Motor, counts_per_s: f64) {
         if let Some(unit) = self.settings.unit_mut() {
-            unit.edit_qpps(motor, counts_per_s);
+            unit.edit(motor, QPPS, counts_per_s);
             self.loops.note_edit();
         }
         if self.drawers.open(Screen::Pwm) != Some(Tab::Settings) {

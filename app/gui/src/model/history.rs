@@ -9,8 +9,7 @@ use std::time::Duration;
 
 use brushwork_link::device::{DisarmReason, Event, Identity, StatusReport, StopReport};
 
-use crate::family;
-use crate::family::{ActiveIndicator, Family};
+use crate::family::{self, ActiveIndicator, Family};
 use crate::model::indicator::IndicatorState;
 
 /// Entries kept; the oldest go first.
@@ -21,7 +20,7 @@ pub const KEPT: usize = 2000;
 pub struct History {
     entries: VecDeque<Entry>,
     /// Entries that had to go.
-    dropped: u64,
+    pub dropped: u64,
     next_number: u64,
     counts: BTreeMap<Kind, u32>,
     units: BTreeMap<u8, UnitState>,
@@ -127,11 +126,6 @@ impl History {
 
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
-    }
-
-    /// Entries that had to make room.
-    pub fn dropped(&self) -> u64 {
-        self.dropped
     }
 
     /// How often each kind of thing happened since the history was cleared: its state, its name, its count.
@@ -372,7 +366,7 @@ mod tests {
         for number in 0..KEPT + 50 {
             history.note(&Event::Failure(Failure::new("read", "0x80", number.to_string(), "Wait")));
         }
-        assert_eq!((history.len(), history.dropped()), (KEPT, 50));
+        assert_eq!((history.len(), history.dropped), (KEPT, 50));
         assert_eq!(history.counts().next().map(|(.., count)| count), Some(KEPT as u32 + 50));
     }
 

@@ -29,11 +29,8 @@ impl Jobs {
     }
 
     /// Whose job the event is about. Its end is the last that is told of a job.
-    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn owner(&mut self, event: &Event) -> Option<Owner> {
-        match event {
-            Event::JobEnded(report) => self.0.remove(&report.id),
-            event => self.0.get(&event.job()?).copied(),
-        }
+        let ended = if let Event::JobEnded(report) = event { self.0.remove(&report.id) } else { None };
+        ended.or_else(|| self.0.get(&event.job()?).copied())
     }
 }

@@ -3,19 +3,16 @@
 //! Everything here follows from the device thread's events. What an event means for the rest of the window (a
 //! sentence to say, a slider to put back to zero) is handed back as [`Effect`]s.
 
-use brushwork_link::Failure;
-use brushwork_link::device::{
-    ArmScope, Channel, DisarmReason, Event, Identity, Sample, StatusReport, StopReport,
+use brushwork_link::device::{DisarmReason, StopReport};
+use brushwork_link::{
+    ArmScope, Channel, Event, Failure, Identity, LinkStatistics, Sample, StatusReport, Stream,
 };
-use brushwork_link::exchange::LinkStatistics;
-use brushwork_link::transport::Stream;
 use std::time::Duration;
 
 use super::indicators::Indicators;
 use super::message::Gravity;
 use super::readings::Readings;
-use crate::family;
-use crate::family::Family;
+use crate::family::{self, Family};
 
 /// Whether motors may be moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

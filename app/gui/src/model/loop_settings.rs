@@ -58,9 +58,9 @@ pub const POSITION: &[Column] = &[
 
 const MINIMUM: &str = "position.min";
 const MAXIMUM: &str = "position.max";
-const QPPS: &str = "velocity.qpps";
+pub const QPPS: &str = "velocity.qpps";
 const INDUCTANCE: &str = "inductance_henries";
-const RESISTANCE: &str = "resistance_ohms";
+pub const RESISTANCE: &str = "resistance_ohms";
 
 /// What the screens that drive have of their own.
 #[derive(Debug, Default)]
@@ -137,16 +137,6 @@ impl UnitSettings {
             Kind::Bool | Kind::Fixed { .. } | Kind::Choice(_) => row.settle(SettingValue::Number(value)),
         };
         self.set(&key, value);
-    }
-
-    /// Edits QPPS of a motor, as it was measured.
-    pub fn edit_qpps(&mut self, motor: Motor, counts_per_s: f64) {
-        self.edit(motor, QPPS, counts_per_s);
-    }
-
-    /// Edits the resistance of a motor, as it was measured, ohm.
-    pub fn edit_resistance(&mut self, motor: Motor, ohms: f64) {
-        self.edit(motor, RESISTANCE, ohms);
     }
 
     /// Edits the other motor to be like `from`.

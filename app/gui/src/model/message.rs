@@ -18,7 +18,7 @@ pub struct Message {
 /// The newest message and how many came before it.
 #[derive(Clone, Debug, Default)]
 pub struct Messages {
-    shown: Option<Message>,
+    pub shown: Option<Message>,
     /// Newest last.
     past: Vec<Message>,
 }
@@ -52,10 +52,6 @@ impl Messages {
         self.say(Gravity::Error, text);
     }
 
-    pub fn shown(&self) -> Option<&Message> {
-        self.shown.as_ref()
-    }
-
     pub fn dismiss(&mut self) {
         self.shown = None;
     }
@@ -75,10 +71,10 @@ mod tests {
         let mut messages = Messages::default();
         messages.fail("Could not open COM3.");
         messages.note("Connected.");
-        assert_eq!(messages.shown().unwrap().gravity, Gravity::Error);
+        assert_eq!(messages.shown.as_ref().unwrap().gravity, Gravity::Error);
         messages.dismiss();
         messages.note("Connected.");
-        assert_eq!(messages.shown().unwrap().text, "Connected.");
+        assert_eq!(messages.shown.as_ref().unwrap().text, "Connected.");
         assert_eq!(messages.past().count(), 3);
     }
 

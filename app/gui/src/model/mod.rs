@@ -40,10 +40,34 @@ pub mod world;
 
 pub use connection::{Connection, ConnectionId, Phase, place_of};
 use devices::Devices;
-use help::Help;
 use message::Messages;
 use palette::Palette;
-use screen::Screen;
+
+pub use general::{General, GeneralView, Section, Sheet};
+pub use help::Help;
+pub use help_page::HelpPage;
+pub use indicator::{IndicatorInfo, IndicatorState};
+pub use jobs::Owner;
+pub use link::{Arming, Effect, LinkView};
+pub use loop_settings::Column;
+pub use message::Gravity;
+pub use screen::Screen;
+pub use setpoints::{Direction, Setpoints};
+pub use settings::{SettingsAction, UnitSettings};
+pub use simulated::Simulated;
+pub use watched::Watched;
+
+pub use channels::graph_channels;
+pub use devices::Choice;
+pub use drawer::Tab;
+pub use general::{Side, Take};
+pub use history::{History, clock_text};
+pub use indicator::state_of;
+pub use position::Position;
+pub use pwm::Pwm;
+pub use settings::{Saved, Settings, Settle, Summary};
+pub use velocity::Velocity;
+pub use watched::interruption;
 
 /// Everything the window shows.
 #[derive(Debug, Default)]

@@ -6,8 +6,7 @@ use brushwork_link::device::{Event, QueuedJob};
 use brushwork_values::Motor;
 
 use super::watched::{Unfinished, Watched};
-use brushwork_core::motion::qpps;
-use brushwork_core::motion::qpps::{Measured, Task};
+use brushwork_core::motion::qpps::{self, Measured, Task};
 
 /// Directions that differ by more than this share are told.
 const ASYMMETRY: f64 = 0.05;
@@ -18,10 +17,10 @@ pub struct QppsPanel {
     pub motor: Motor,
     pub travel_limit_counts: f64,
     pub time_limit_s: f64,
-    job: Watched<Measured>,
-    measured: Option<Measured>,
+    pub job: Watched<Measured>,
+    pub measured: Option<Measured>,
     /// Why nothing was found the last time.
-    refusal: Option<String>,
+    pub refusal: Option<String>,
 }
 
 impl Default for QppsPanel {
@@ -53,35 +52,10 @@ impl QppsPanel {
         Some(job)
     }
 
-    pub fn cancel(&self) {
-        self.job.cancel();
-    }
-
-    /// The job was not taken.
-    pub fn not_begun(&mut self) {
-        self.job.forget();
-    }
-
     /// Another unit, or none.
     pub fn forget(&mut self) {
         self.job.forget();
         (self.measured, self.refusal) = (None, None);
-    }
-
-    pub fn is_running(&self) -> bool {
-        self.job.is_running()
-    }
-
-    pub fn progress(&self) -> Option<(f32, &str)> {
-        self.job.progress()
-    }
-
-    pub fn measured(&self) -> Option<&Measured> {
-        self.measured.as_ref()
-    }
-
-    pub fn refusal(&self) -> Option<&str> {
-        self.refusal.as_deref()
     }
 
     /// Takes in an event of its job; at the end whether something was found.

@@ -2,9 +2,7 @@
 
 use brushwork_link::device::{Event, Job, QueuedJob};
 
-use super::link::Effect;
-use super::message::Gravity;
-use super::watched::Watched;
+use super::{Effect, Gravity, Watched};
 use crate::mcl::DocId;
 
 /// Whose program is meant: its tab, and the text as it was compiled.
@@ -18,10 +16,10 @@ pub struct Source {
 /// The scripts of one link.
 #[derive(Debug, Default)]
 pub struct ScriptWork {
-    job: Watched<String>,
+    pub job: Watched<String>,
     sending: Option<Source>,
     /// What was downloaded last over this link.
-    on_board: Option<Source>,
+    pub on_board: Option<Source>,
 }
 
 impl ScriptWork {
@@ -33,31 +31,9 @@ impl ScriptWork {
         Some(job)
     }
 
-    pub fn cancel(&self) {
-        self.job.cancel();
-    }
-
-    /// The job was not taken.
-    pub fn not_begun(&mut self) {
-        self.forget();
-    }
-
     /// Another unit, or none.
     pub fn forget(&mut self) {
         *self = Self::default();
-    }
-
-    pub fn is_running(&self) -> bool {
-        self.job.is_running()
-    }
-
-    pub fn progress(&self) -> Option<(f32, &str)> {
-        self.job.progress()
-    }
-
-    /// Which program the controller holds, as far as this link has put it there.
-    pub fn on_board(&self) -> Option<&Source> {
-        self.on_board.as_ref()
     }
 
     /// Takes in an event of its job.

@@ -11,8 +11,6 @@ pub enum Direction {
 }
 
 impl Direction {
-    pub const BOTH: [Self; 2] = [Self::Backward, Self::Forward];
-
     pub const fn sign(self) -> f64 {
         match self {
             Self::Backward => -1.0,

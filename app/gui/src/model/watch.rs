@@ -11,7 +11,7 @@ use crate::family::Family;
 pub struct Watch {
     pins: Option<Vec<PinSignal>>,
     /// Whether a script was started, or was stopped, over this link; no command tells whether one runs.
-    script_runs: Option<bool>,
+    pub script_runs: Option<bool>,
     /// The settings that it goes by.
     keys: Vec<String>,
     /// The revision of the settings that was looked at last.
@@ -22,10 +22,6 @@ impl Watch {
     /// Where the input pins stand, while they are read.
     pub fn pins(&self) -> Option<&[PinSignal]> {
         self.pins.as_deref()
-    }
-
-    pub fn script_runs(&self) -> Option<bool> {
-        self.script_runs
     }
 
     /// A script was started over this link, or was stopped.

@@ -1,10 +1,8 @@
 //! A job that was asked for, followed by the device thread's events until it ends.
 
-use brushwork_link::device::{Event, Job, JobEnding, JobTicket, QueuedJob};
-use brushwork_link::exchange::Interruption;
+use brushwork_link::{Event, Interruption, Job, JobEnding, JobTicket, QueuedJob};
 
-use super::link::Effect;
-use super::message::Gravity;
+use super::{Effect, Gravity};
 
 /// One kind of job, at most one of which runs.
 #[derive(Debug)]

@@ -3,9 +3,7 @@
 use brushwork_link::settings::SettingsImage;
 
 use crate::family_action::{FamilyAction, Host};
-use crate::model::connection::Connection;
-use crate::model::general::Sheet;
-use crate::model::screen::Screen;
+use crate::model::{Connection, Screen, Sheet};
 
 /// What the assistants ask for.
 #[derive(Debug)]

@@ -2,12 +2,12 @@
 
 use brushwork_canopen::NodeId;
 use brushwork_canopen::adapter::Form;
-use egui::{ComboBox, Context, DragValue, Grid, Rect, Response, RichText, Ui, Window, vec2};
+use egui::{ComboBox, Context, DragValue, Grid, Rect, RichText, Ui, Window, vec2};
 
 use crate::command::{Command, Commands};
 use crate::model::Model;
 use crate::model::canopen::ADAPTER_BAUD_RATES;
-use crate::theme::Palette;
+use crate::widgets::choice_ui;
 
 const SIMULATED: &str = "Simulated bus, in this program";
 
@@ -47,13 +47,10 @@ fn contents_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         ui.end_row();
         if choice.port.is_some() {
             ui.label("Its baud rate");
-            let combo = ComboBox::from_id_salt("adapter baud").selected_text(choice.baud.to_string());
-            let response = combo.show_ui(ui, |ui| {
-                for baud in ADAPTER_BAUD_RATES {
-                    ui.selectable_value(&mut choice.baud, baud, baud.to_string());
-                }
+            let list = ComboBox::from_id_salt("adapter baud");
+            choice_ui(ui, list, "Adapter baud rate", &mut choice.baud, ADAPTER_BAUD_RATES, |baud| {
+                baud.to_string()
             });
-            name(ui, &response.response, "Adapter baud rate");
             ui.end_row();
         }
         ui.label("Nodes");
@@ -64,7 +61,7 @@ fn contents_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             }
             if let Some(node) = &mut choice.node {
                 let response = ui.add(DragValue::new(node).range(1..=NodeId::MAX).prefix("node "));
-                name(ui, &response, "Node id");
+                ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Node id"));
             }
         });
         ui.end_row();
@@ -81,7 +78,7 @@ fn contents_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 }
 
 fn adapter_ui(ui: &mut Ui, model: &mut Model) {
-    let ports: Vec<_> = model.devices.ports().iter().map(|port| port.name.clone()).collect();
+    let ports: Vec<_> = model.devices.ports.iter().map(|port| port.name.clone()).collect();
     let chosen = &mut model.canopen.port;
     let text = chosen.clone().unwrap_or_else(|| SIMULATED.to_owned());
     let response = ComboBox::from_id_salt("can adapter").width(240.0).selected_text(text).show_ui(ui, |ui| {
@@ -90,14 +87,9 @@ fn adapter_ui(ui: &mut Ui, model: &mut Model) {
             ui.selectable_value(chosen, Some(port.clone()), port);
         }
     });
-    name(ui, &response.response, "CAN adapter");
-}
-
-fn name(ui: &Ui, response: &Response, text: &str) {
-    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(text));
+    ui.ctx().accesskit_node_builder(response.response.id, |node| node.set_label("CAN adapter"));
 }
 
 fn weak_ui(ui: &mut Ui, text: &str) {
-    let color = Palette::of(ui).weak_text;
-    ui.add(egui::Label::new(RichText::new(text).color(color)).wrap());
+    ui.add(egui::Label::new(RichText::new(text).weak()).wrap());
 }

@@ -7,10 +7,8 @@ use super::generator::generator_ui;
 use super::loops::loops_ui;
 use super::qpps::qpps_ui;
 use crate::command::Commands;
-use crate::model::Model;
-use crate::model::drawer::Tab;
-use crate::model::loop_settings::{Column, POSITION, PWM, VELOCITY};
-use crate::model::screen::Screen;
+use crate::model::loop_settings::{POSITION, PWM, VELOCITY};
+use crate::model::{Column, Model, Screen, Tab};
 use crate::theme::Palette;
 use crate::tune::by_hand::by_hand_ui;
 

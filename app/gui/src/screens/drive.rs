@@ -1,28 +1,20 @@
 //! What the screens that drive motors share: the arm switch, a motor's row, sync and on release, and the live graph.
 
 use brushwork_link::device::{ArmScope, Channel};
-use brushwork_link::transport::Stream;
 use brushwork_values::Motor;
-use egui::{
-    Align, ComboBox, Frame, Label, Layout, Margin, RichText, ScrollArea, Stroke, Ui, UiBuilder, vec2,
-};
+use egui::{Align, Frame, Label, Layout, Margin, RichText, ScrollArea, Stroke, Ui, UiBuilder, vec2};
 
 use super::drawer::{drawer_ui, is_tuning};
+use super::stream::stream_ui;
 use super::title_ui;
 use crate::command::{Command, Commands};
 use crate::family::{Ability, Family};
 use crate::graph::panel;
-use crate::model::Model;
-use crate::model::indicator::IndicatorState;
-use crate::model::link::{Arming, LinkView};
-use crate::model::setpoints::{Direction, Setpoints};
+use crate::model::{Arming, Direction, IndicatorState, LinkView, Model, Setpoints};
 use crate::theme::Palette;
 use crate::tune::guide::guide_ui;
-use crate::widgets::arm_switch::arm_switch_ui;
-use crate::widgets::jog;
-use crate::widgets::jog::jog_ui;
-use crate::widgets::numeric::Numeric;
-use crate::widgets::readout::Readout;
+use crate::widgets::jog::{self, jog_ui};
+use crate::widgets::{Numeric, Readout, arm_switch_ui};
 
 /// Height of a motor's row.
 const ROW_HEIGHT: f32 = 34.0;
@@ -113,22 +105,14 @@ pub fn arm_ui(ui: &mut Ui, scope: ArmScope, link: &LinkView, family: &dyn Family
             });
         });
         if link.stream.is_none() && family.lacks(Ability::Streams).is_none() {
-            stream_ui(ui, commands);
+            stream_ui(ui, "port: its time-out is what stops the motors if this program dies.", commands);
         }
         for refusal in &link.refusals {
-            reason_ui(ui, IndicatorState::Error, &refusal.to_string());
+            IndicatorState::Error.line_ui(ui, &refusal.to_string());
         }
         for warning in &link.warnings {
-            reason_ui(ui, IndicatorState::Warning, warning);
+            IndicatorState::Warning.line_ui(ui, warning);
         }
-    });
-}
-
-fn reason_ui(ui: &mut Ui, state: IndicatorState, text: &str) {
-    ui.horizontal(|ui| {
-        let (rect, _) = ui.allocate_exact_size(vec2(18.0, 18.0), egui::Sense::hover());
-        state.paint(ui, rect.center(), 6.0);
-        ui.add(Label::new(text).wrap());
     });
 }
 
@@ -144,23 +128,6 @@ fn fallback_text(arming: Arming) -> String {
         Arming::Asked(_) => "Asking the controller …".to_owned(),
         Arming::Disarmed => "Disarmed: nothing on this screen moves a motor.".to_owned(),
     }
-}
-
-/// Asked for when the port does not tell by its name which of the controller's streams it is.
-fn stream_ui(ui: &mut Ui, commands: &mut Commands) {
-    ui.horizontal(|ui| {
-        let label = ui.label("This port goes to the controller's");
-        let combo = ComboBox::from_id_salt("stream").selected_text("choose …");
-        let response = combo.show_ui(ui, |ui| {
-            for stream in Stream::ALL {
-                if ui.selectable_label(false, stream.label()).clicked() {
-                    commands.push(Command::SetStream(stream));
-                }
-            }
-        });
-        response.response.labelled_by(label.id);
-        ui.label("port: its time-out is what stops the motors if this program dies.");
-    });
 }
 
 /// One motor's row: its slider in `slider_ui` between two jog buttons, and what a channel reads. Tells which jog button is
@@ -199,7 +166,7 @@ pub fn motor_ui(
             });
             held = held.or(jog(ui, Direction::Forward));
         });
-        ui.label(RichText::new(output.word).small().color(Palette::of(ui).weak_text));
+        ui.label(RichText::new(output.word).small().weak());
         let channel = output.channels[motor.index()];
         let text = model.front.link.readings.text(channel);
         let label = format!("{motor} {}", output.word);

@@ -10,12 +10,8 @@ use crate::actions::Action;
 use crate::command::Commands;
 use crate::family::Family;
 use crate::family_action::Host;
-use crate::model::Model;
-use crate::model::connection::{Connection, ConnectionId};
-use crate::model::general::GeneralView;
-use crate::model::help::Help;
-use crate::model::help_page::HelpPage;
-use crate::model::simulated::Simulated;
+use crate::model::connection::ConnectionId;
+use crate::model::{Connection, GeneralView, Help, HelpPage, Model, Simulated};
 
 /// What a family draws itself.
 pub trait Face: Sync {

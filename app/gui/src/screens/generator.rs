@@ -9,9 +9,8 @@ use super::progress::progress_ui;
 use crate::command::{Command, Commands, GuidedAction};
 use crate::model::Model;
 use crate::model::generator::{duration_text, mode_of};
-use crate::theme;
-use crate::theme::Palette;
-use crate::widgets::numeric::Numeric;
+use crate::theme::{self, Palette};
+use crate::widgets::{Numeric, choice_ui};
 use brushwork_core::motion::player::JudgedStep;
 use brushwork_core::motion::profile::{COUNT_RANGE, DWELL_RANGE_S, Mode, Profile, Shape};
 
@@ -28,7 +27,7 @@ pub fn generator_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     });
     ui.horizontal(|ui| {
         if is_running {
-            return progress_ui(ui, model.front.generator.progress(), commands);
+            return progress_ui(ui, model.front.generator.job.progress(), commands);
         }
         let is_armed = model.front.link.arming.is_armed_for(scope);
         let plan = model.front.plan(mode);
@@ -102,35 +101,30 @@ fn field(
 fn labelled_ui(ui: &mut Ui, label: &str, field: &Numeric<'_>, value: &mut f64) {
     // Label and field stay on one line.
     ui.horizontal(|ui| {
-        ui.label(RichText::new(label).color(Palette::of(ui).weak_text));
+        ui.weak(label);
         field.ui(ui, value);
     });
 }
 
 fn shape_ui(ui: &mut Ui, shape: &mut Shape) {
-    let combo = ComboBox::from_id_salt("shape").width(168.0).selected_text(shape.title());
-    let response = combo.show_ui(ui, |ui| {
-        for each in Shape::ALL {
-            ui.selectable_value(shape, each, each.title());
-        }
-    });
+    let list = ComboBox::from_id_salt("shape").width(168.0);
+    let response = choice_ui(ui, list, "Shape", shape, Shape::ALL, Shape::title);
     let hint =
         "A step and a square wave change at once; a trapezoid and a jog keep to Accel, Decel and Speed";
-    let response = response.response.on_hover_text(hint);
-    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Shape"));
+    response.on_hover_text(hint);
 }
 
 /// Rise time, overshoot, settling and ITAE of the last steps.
 fn figures_ui(ui: &mut Ui, steps: &[&JudgedStep], mode: Mode) {
-    let palette = Palette::of(ui);
+    let _palette = Palette::of(ui);
     if steps.is_empty() {
         let hint = "After a step its rise time, overshoot, settling time and ITAE stand here.";
-        ui.label(RichText::new(hint).small().color(palette.weak_text));
+        ui.label(RichText::new(hint).small().weak());
         return;
     }
     Grid::new("figures").spacing(vec2(18.0, 2.0)).show(ui, |ui| {
         for heading in ["Step", "Response", "Rise", "Overshoot", "Settling", "ITAE", "Final error"] {
-            ui.label(RichText::new(heading).small().color(palette.weak_text));
+            ui.label(RichText::new(heading).small().weak());
         }
         ui.end_row();
         for step in steps {

@@ -5,12 +5,10 @@ use brushwork_values::Motor;
 use egui::{Button, Grid, RichText, Ui, vec2};
 
 use crate::command::{Command, Commands};
-use crate::model::Model;
-use crate::model::loop_settings::{Column, LoopView, number};
-use crate::model::settings::UnitSettings;
+use crate::model::loop_settings::{LoopView, number};
+use crate::model::{Column, Model, UnitSettings};
 use crate::theme::Palette;
-use crate::widgets::numeric::Numeric;
-use crate::widgets::readout::NO_VALUE;
+use crate::widgets::{NO_VALUE, Numeric};
 use brushwork_core::settings::counted;
 
 /// Where no row says otherwise.
@@ -26,7 +24,7 @@ pub fn loops_ui(ui: &mut Ui, model: &mut Model, columns: &'static [Column], comm
     Grid::new(("loops", columns[0].key)).spacing(vec2(8.0, 4.0)).show(ui, |ui| {
         ui.label("");
         for column in columns {
-            ui.label(RichText::new(column.label).small().color(palette.weak_text));
+            ui.label(RichText::new(column.label).small().weak());
         }
         ui.end_row();
         for motor in Motor::BOTH {
@@ -143,5 +141,5 @@ fn buttons_ui(
         0 => "As the controller holds them.".to_owned(),
         _ => format!("{} changed and not applied yet.", counted(edits)),
     };
-    ui.label(RichText::new(state).small().color(Palette::of(ui).weak_text));
+    ui.label(RichText::new(state).small().weak());
 }

@@ -6,7 +6,6 @@ use super::command::Commands;
 use super::mcl;
 use super::model::screen::Screen;
 use super::model::{Model, Phase};
-use super::theme::Palette;
 
 pub mod canopen;
 mod drawer;
@@ -20,6 +19,7 @@ mod progress;
 mod pwm;
 mod qpps;
 pub(super) mod status;
+pub mod stream;
 mod velocity;
 
 /// The screen that is open, as the family of the controller in front draws it.
@@ -50,11 +50,10 @@ fn shared_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 
 /// What a screen shows while it has nothing to show.
 pub(super) fn nothing_ui(ui: &mut Ui, hint: &str) {
-    let color = Palette::of(ui).weak_text;
     ui.with_layout(Layout::centered_and_justified(egui::Direction::LeftToRight), |ui| {
         ui.with_layout(Layout::top_down(Align::Center), |ui| {
             ui.add_space(ui.available_height() * 0.35);
-            ui.label(RichText::new(hint).size(15.0).color(color));
+            ui.label(RichText::new(hint).size(15.0).weak());
         });
     });
 }
@@ -75,8 +74,7 @@ pub(super) fn not_connected_text(phase: &Phase) -> String {
 pub(super) fn title_ui(ui: &mut Ui, title: &str, note: &str) {
     ui.horizontal(|ui| {
         ui.heading(title);
-        let color = Palette::of(ui).weak_text;
-        ui.label(RichText::new(note).color(color));
+        ui.weak(note);
     });
     ui.add_space(4.0);
 }

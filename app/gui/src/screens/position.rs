@@ -8,13 +8,9 @@ use egui::{Label, Ui};
 use super::drive::{Output, drive_ui, motor_ui, on_release_ui, options_ui, pace_ui};
 use super::{not_connected_text, nothing_ui};
 use crate::command::Commands;
-use crate::model::Model;
-use crate::model::connection::Connection;
 use crate::model::position::PACE_RANGE;
-use crate::model::setpoints::Direction;
-use crate::model::settings::UnitSettings;
-use crate::widgets::numeric::Numeric;
-use crate::widgets::setpoint::Setpoint;
+use crate::model::{Connection, Direction, Model, UnitSettings};
+use crate::widgets::{Numeric, Setpoint};
 
 const OUTPUT: Output = Output {
     scope: ArmScope::Position,

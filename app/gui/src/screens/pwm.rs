@@ -9,8 +9,7 @@ use super::{not_connected_text, nothing_ui};
 use crate::command::Commands;
 use crate::model::Model;
 use crate::model::pwm::ACCEL_RANGE_PERCENT_PER_S;
-use crate::widgets::numeric::Numeric;
-use crate::widgets::setpoint::Setpoint;
+use crate::widgets::{Numeric, Setpoint};
 
 const OUTPUT: Output = Output {
     scope: ArmScope::Pwm,

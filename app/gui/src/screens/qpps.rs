@@ -5,9 +5,8 @@ use egui::{Button, Label, RichText, Ui};
 
 use super::progress::progress_ui;
 use crate::command::{Command, Commands, GuidedAction};
-use crate::model::Model;
-use crate::model::indicator::IndicatorState;
 use crate::model::qpps::lines;
+use crate::model::{IndicatorState, Model};
 use crate::theme::Palette;
 use crate::widgets::numeric::Numeric;
 
@@ -15,13 +14,13 @@ const WHAT_IT_DOES: &str = "Checks with little duty that the encoder counts up w
     100 % in both directions at Accel until its speed holds. Lift the wheels or unhitch the load first.";
 
 pub fn qpps_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-    let palette = Palette::of(ui);
-    ui.add(Label::new(RichText::new(WHAT_IT_DOES).small().color(palette.weak_text)).wrap());
+    let _palette = Palette::of(ui);
+    ui.add(Label::new(RichText::new(WHAT_IT_DOES).small().weak()).wrap());
     let is_running = model.front.is_guided();
     ui.horizontal(|ui| {
         ui.add_enabled_ui(!is_running, |ui| task_ui(ui, model));
         if is_running {
-            return progress_ui(ui, model.front.qpps.progress(), commands);
+            return progress_ui(ui, model.front.qpps.job.progress(), commands);
         }
         let scope = model.screen.arm_scope();
         let is_armed = scope.is_some_and(|scope| model.front.link.arming.is_armed_for(scope));
@@ -31,7 +30,7 @@ pub fn qpps_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             commands.push(Command::Guided(GuidedAction::MeasureQpps));
         }
         if !is_armed {
-            let hint = RichText::new("Arm this screen to measure.").small().color(palette.weak_text);
+            let hint = RichText::new("Arm this screen to measure.").small().weak();
             ui.add(Label::new(hint).truncate());
         }
     });
@@ -45,14 +44,7 @@ fn task_ui(ui: &mut Ui, model: &mut Model) {
     }
     ui.separator();
     ui.label("Travel up to");
-    let travel = Numeric {
-        name: "Travel limit",
-        unit: "counts",
-        range: 100.0..=2e9,
-        decimals: 0,
-        step: 1000.0,
-        width: 130.0,
-    };
+    let travel = Numeric::new("Travel limit", "counts", 100.0..=2e9, (0, 1000.0, 130.0));
     travel.ui(ui, &mut panel.travel_limit_counts).on_hover_text("How far it may go in one direction");
     ui.label("Time up to");
     let time =
@@ -62,9 +54,9 @@ fn task_ui(ui: &mut Ui, model: &mut Model) {
 }
 
 fn result_ui(ui: &mut Ui, model: &mut Model) {
-    let palette = Palette::of(ui);
+    let _palette = Palette::of(ui);
     let mut taken_over = None;
-    match (model.front.qpps.measured(), model.front.qpps.refusal()) {
+    match (&model.front.qpps.measured, &model.front.qpps.refusal) {
         (Some(measured), _) => {
             let lines = lines(measured);
             ui.horizontal(|ui| {
@@ -76,18 +68,14 @@ fn result_ui(ui: &mut Ui, model: &mut Model) {
                 }
             });
             for line in &lines[1..] {
-                ui.label(RichText::new(line).small().color(palette.weak_text));
+                ui.label(RichText::new(line).small().weak());
             }
         }
         (None, Some(refusal)) => {
-            ui.horizontal(|ui| {
-                let (rect, _) = ui.allocate_exact_size(egui::vec2(18.0, 18.0), egui::Sense::hover());
-                IndicatorState::Error.paint(ui, rect.center(), 6.0);
-                ui.add(Label::new(refusal).wrap());
-            });
+            IndicatorState::Error.line_ui(ui, refusal);
         }
         (None, None) => {
-            ui.label(RichText::new("Nothing measured yet.").small().color(palette.weak_text));
+            ui.label(RichText::new("Nothing measured yet.").small().weak());
         }
     }
     if let Some((motor, qpps)) = taken_over {

@@ -10,8 +10,7 @@ use super::{not_connected_text, nothing_ui};
 use crate::command::Commands;
 use crate::model::Model;
 use crate::model::velocity::ACCEL_RANGE_COUNTS_PER_S2;
-use crate::widgets::numeric::Numeric;
-use crate::widgets::setpoint::Setpoint;
+use crate::widgets::{Numeric, Setpoint};
 
 const OUTPUT: Output = Output {
     scope: ArmScope::Velocity,

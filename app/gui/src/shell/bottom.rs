@@ -4,8 +4,7 @@ use brushwork_link::exchange::LinkStatistics;
 use egui::{Align2, Role, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
 use crate::model::Model;
-use crate::theme;
-use crate::theme::Palette;
+use crate::theme::{self, Palette};
 use crate::widgets::indicator;
 
 const LINK_WIDTH: f32 = 226.0;

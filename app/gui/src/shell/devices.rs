@@ -1,8 +1,6 @@
 //! The device list: the simulated controller, the serial ports as they come and go, and a field for any other path.
 
-use brushwork_link::FamilyChoice;
-use brushwork_link::device::{Addresses, Identity};
-use brushwork_link::transport::PortInfo;
+use brushwork_link::{Addresses, FamilyChoice, Identity, PortInfo};
 use egui::{
     Align2, ComboBox, Key, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, TextStyle, Ui,
     WidgetInfo, pos2, vec2,
@@ -11,18 +9,12 @@ use egui::{
 use egui::containers::menu::MenuButton;
 
 use crate::command::{Command, Commands};
-use crate::family;
-use crate::family::Family;
+use crate::family::{self, Family};
 use crate::model::devices::{BAUD_RATES, Choice, Devices};
-use crate::model::indicator::IndicatorState;
-use crate::model::link::Arming;
-use crate::model::simulated::Simulated;
-use crate::model::{Connection, ConnectionId, Model, Phase, place_of};
+use crate::model::{Arming, Connection, ConnectionId, IndicatorState, Model, Phase, Simulated, place_of};
 use crate::screens::face;
 use crate::theme::Palette;
-use crate::widgets::heading::heading_ui;
-use crate::widgets::label::name_combo;
-use crate::widgets::text_field::text_field_ui;
+use crate::widgets::{choice_ui, heading_ui, text_field_ui};
 
 const ROW_HEIGHT: f32 = 54.0;
 const RECENT_WIDTH: f32 = 70.0;
@@ -33,7 +25,7 @@ pub fn devices_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     for row in rows(model) {
         row_ui(ui, &row, model, commands);
     }
-    if model.devices.ports().is_empty() {
+    if model.devices.ports.is_empty() {
         hint_ui(ui, &model.devices);
     }
     ui.horizontal(|ui| {
@@ -68,9 +60,9 @@ struct Row {
 fn rows(model: &Model) -> Vec<Row> {
     let devices = &model.devices;
     let simulated = &devices.simulated;
-    let (place, title) = (devices.simulated_target(), format!("Simulated {}", name_of(simulated)));
+    let (place, title) = (devices.simulated_target(), format!("Simulated {}", name_of(&simulated.model)));
     let mut rows = vec![row(model, Choice::Simulated, &place, &title, "in this program")];
-    for port in devices.ports() {
+    for port in &devices.ports {
         rows.push(row(model, Choice::Port(port.name.clone()), &port.name, &port.name, &described(port)));
     }
     if let (Choice::Port(name), true) = (&devices.choice, devices.choice_is_gone()) {
@@ -248,8 +240,7 @@ fn hint_ui(ui: &mut Ui, devices: &Devices) {
         Some(failure) => failure.to_string(),
         None => "No serial port found. Plug in a controller, or type a path below.".to_owned(),
     };
-    let color = Palette::of(ui).weak_text;
-    ui.label(RichText::new(text).small().color(color));
+    ui.label(RichText::new(text).small().weak());
 }
 
 /// The field for a path; true when Enter was pressed in it.
@@ -297,35 +288,29 @@ fn options_ui(ui: &mut Ui, devices: &mut Devices) {
 }
 
 /// The model's name.
-fn name_of(simulated: &Simulated) -> &str {
-    let named = family::simulated_models().find(|(key, _)| *key == simulated.model);
-    named.map_or(simulated.model.as_str(), |(_, name)| name)
+fn name_of(model: &str) -> &str {
+    family::simulated_models().find(|(key, _)| *key == model).map_or(model, |(_, name)| name)
 }
 
 /// Which model is simulated.
 fn model_ui(ui: &mut Ui, simulated: &mut Simulated) {
-    let combo = ComboBox::from_id_salt("simulated model").width(104.0).selected_text(name_of(simulated));
-    let response = combo.show_ui(ui, |ui| {
-        for (key, name) in family::simulated_models() {
-            if ui.selectable_label(simulated.model == key, name).clicked() {
-                key.clone_into(&mut simulated.model);
-            }
-        }
-    });
-    name_combo(ui, &response.response, "Simulated model", "Which controller is simulated in this program");
+    let models = family::simulated_models().map(|(key, _)| key);
+    let (list, mut chosen) =
+        (ComboBox::from_id_salt("simulated model").width(104.0), simulated.model.as_str());
+    choice_ui(ui, list, "Simulated model", &mut chosen, models, name_of)
+        .on_hover_text("Which controller is simulated in this program");
+    if chosen != simulated.model {
+        simulated.model = chosen.to_owned();
+    }
 }
 
 /// Which family the controllers at a port are of.
 fn family_ui(ui: &mut Ui, chosen: &mut FamilyChoice) {
-    let combo = ComboBox::from_id_salt("family").width(168.0).selected_text(chosen.label());
-    let response = combo.show_ui(ui, |ui| {
-        for family in FamilyChoice::all() {
-            ui.selectable_value(chosen, family, family.label());
-        }
-    });
+    let list = ComboBox::from_id_salt("family").width(168.0);
+    let response = choice_ui(ui, list, "Controller family", chosen, FamilyChoice::all(), FamilyChoice::label);
     let help = "Find out asks for MCP and RoboClaw first, then for Motion Minds, at one bit rate. Choosing the family is quicker, and \
                 brings its usual bit rate.";
-    name_combo(ui, &response.response, "Controller family", help);
+    response.on_hover_text(help);
 }
 
 fn address_ui(ui: &mut Ui, shown: Addresses, family: &dyn Family) -> Addresses {
@@ -336,31 +321,23 @@ fn address_ui(ui: &mut Ui, shown: Addresses, family: &dyn Family) -> Addresses {
         Addresses::Only(address) => family.address_label(address),
     };
     let mut chosen = shown;
-    let combo = ComboBox::from_id_salt("address").width(72.0).selected_text(text(shown));
-    let response = combo.show_ui(ui, |ui| {
-        let each = (0..=u8::MAX).filter(|number| family.family().has_address(*number));
-        for addresses in std::iter::once(Addresses::Scan).chain(each.map(Addresses::Only)) {
-            ui.selectable_value(&mut chosen, addresses, text(addresses));
-        }
-    });
+    let each = (0..=u8::MAX).filter(|number| family.family().has_address(*number));
+    let list = ComboBox::from_id_salt("address").width(72.0);
+    let each = std::iter::once(Addresses::Scan).chain(each.map(Addresses::Only));
     let (all, cost) = (family.family().addresses(), family.scan_cost());
     let help = format!("Which addresses to ask when connecting: all from {all}, {cost}or one");
-    name_combo(ui, &response.response, "Address", &help);
+    choice_ui(ui, list, "Address", &mut chosen, each, text).on_hover_text(help);
     chosen
 }
 
 fn baud_ui(ui: &mut Ui, chosen: &mut u32) {
-    let combo = ComboBox::from_id_salt("baud").width(64.0).selected_text(chosen.to_string());
-    let response = combo.show_ui(ui, |ui| {
-        for baud in BAUD_RATES {
-            ui.selectable_value(chosen, baud, baud.to_string());
-        }
-    });
-    name_combo(ui, &response.response, "Baud rate", "The rate the controller's serial port is set to");
+    let list = ComboBox::from_id_salt("baud").width(64.0);
+    choice_ui(ui, list, "Baud rate", chosen, BAUD_RATES, |baud| baud.to_string())
+        .on_hover_text("The rate the controller's serial port is set to");
 }
 
 fn recent_ui(ui: &mut Ui, devices: &Devices, commands: &mut Commands) {
-    let recent = devices.recent();
+    let recent = &devices.recent;
     let menu = ui.add_enabled_ui(!recent.is_empty(), |ui| {
         let button = egui::Button::new("Recent").min_size(vec2(RECENT_WIDTH, 0.0));
         MenuButton::from_button(button).ui(ui, |ui| {

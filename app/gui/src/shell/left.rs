@@ -6,8 +6,7 @@ use super::devices::devices_ui;
 use crate::command::{Command, Commands};
 use crate::model::Model;
 use crate::theme::Palette;
-use crate::widgets::heading::heading_ui;
-use crate::widgets::stop;
+use crate::widgets::{heading_ui, stop};
 
 pub fn left_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     Panel::bottom("stop").resizable(false).show_separator_line(false).frame(egui::Frame::new()).show(

@@ -4,10 +4,7 @@ use brushwork_link::settings::{Difference, diff};
 use egui::{Align2, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
 use crate::command::{Command, Commands};
-use crate::model::Model;
-use crate::model::indicator::IndicatorState;
-use crate::model::screen::Screen;
-use crate::model::settings::Saved;
+use crate::model::{IndicatorState, Model, Saved, Screen};
 use crate::theme::Palette;
 
 pub const WIDTH: f32 = 206.0;
@@ -80,7 +77,7 @@ fn as_known_before(model: &Model) -> (IndicatorState, String) {
 
 /// How the open profile differs from the controller.
 fn profile(model: &Model) -> String {
-    let Some(opened) = model.front.general.profiles.opened() else { return "no profile open".to_owned() };
+    let Some(opened) = &model.front.general.profiles.opened else { return "no profile open".to_owned() };
     let differing = model.front.settings.unit().and_then(|unit| {
         let differences = diff(unit.table(), unit.ram()?, &opened.profile.settings);
         Some(differences.iter().filter(|difference| difference.right.is_some()).count())

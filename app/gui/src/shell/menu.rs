@@ -2,8 +2,7 @@
 
 use egui::{Button, MenuBar, Response, Role, ScrollArea, Ui, WidgetInfo};
 
-use crate::actions;
-use crate::actions::{Action, Menu};
+use crate::actions::{self, Action, Menu};
 use crate::command::Commands;
 use crate::model::Model;
 

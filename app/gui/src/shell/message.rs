@@ -4,10 +4,8 @@ use egui::{Align, Label, Layout, RichText, Role, Ui, WidgetInfo, vec2};
 
 use super::marks;
 use crate::command::{Command, Commands};
-use crate::model::Model;
-use crate::model::indicator::IndicatorState;
-use crate::model::message::{Gravity, Message};
-use crate::theme::Palette;
+use crate::model::message::Message;
+use crate::model::{Gravity, IndicatorState, Model};
 
 const HEIGHT: f32 = 36.0;
 const BUTTON_WIDTH: f32 = 76.0;
@@ -21,7 +19,7 @@ pub fn message_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
             let width = ui.available_width() - marks::WIDTH - ui.spacing().item_spacing.x;
             ui.allocate_ui_with_layout(vec2(width, HEIGHT), Layout::left_to_right(Align::Center), |ui| {
                 ui.set_min_size(vec2(width, HEIGHT));
-                match model.messages.shown() {
+                match &model.messages.shown {
                     Some(message) => shown_ui(ui, message, commands),
                     None => quiet_ui(ui, model),
                 }
@@ -37,8 +35,7 @@ fn shown_ui(ui: &mut Ui, message: &Message, commands: &mut Commands) {
         Gravity::Warning => IndicatorState::Warning,
         Gravity::Error => IndicatorState::Error,
     };
-    let (rect, _) = ui.allocate_exact_size(vec2(20.0, HEIGHT), egui::Sense::hover());
-    state.paint(ui, rect.center(), 7.0);
+    state.ui(ui, vec2(20.0, HEIGHT), 7.0);
     let text_width = (ui.available_width() - BUTTON_WIDTH - 8.0).max(60.0);
     ui.allocate_ui_with_layout(vec2(text_width, HEIGHT), Layout::left_to_right(Align::Center), |ui| {
         ui.set_min_size(vec2(text_width, HEIGHT));
@@ -59,8 +56,7 @@ fn quiet_ui(ui: &mut Ui, model: &Model) {
             "No controller is connected. Choose one at the left and press Connect; the simulated one is always there."
         }
     };
-    let color = Palette::of(ui).weak_text;
-    ui.add(Label::new(RichText::new(text).color(color)).wrap());
+    ui.add(Label::new(RichText::new(text).weak()).wrap());
 }
 
 const fn word(gravity: Gravity) -> &'static str {

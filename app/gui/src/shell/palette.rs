@@ -4,8 +4,7 @@ use egui::{
     Align2, Area, Button, Context, Frame, Id, Key, Modifiers, Order, Role, ScrollArea, Ui, WidgetInfo, vec2,
 };
 
-use crate::actions;
-use crate::actions::Ready;
+use crate::actions::{self, Ready};
 use crate::command::{Command, Commands};
 use crate::model::palette::{Palette, fitting};
 use crate::model::{Connection, Model};
@@ -82,7 +81,7 @@ fn rows(ctx: &Context, model: &Model) -> Vec<Row> {
     let actions = actions::all().map(of_action);
     actions
         .chain(model.others.iter().filter_map(of_connection))
-        .chain(model.devices.recent().iter().map(of_recent))
+        .chain(model.devices.recent.iter().map(of_recent))
         .collect()
 }
 

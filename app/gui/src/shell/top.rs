@@ -6,8 +6,7 @@ use egui::{Label, Role, Ui, WidgetInfo, vec2};
 use crate::command::{Command, Commands};
 use crate::family::{Figure, Figures};
 use crate::model::Model;
-use crate::widgets::label::fixed_label_ui;
-use crate::widgets::readout::{NO_VALUE, Readout};
+use crate::widgets::{NO_VALUE, Readout, fixed_label_ui};
 
 const GAP: f32 = 4.0;
 const ZERO_WIDTH: f32 = 42.0;

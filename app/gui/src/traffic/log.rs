@@ -9,12 +9,10 @@ use egui::{
 use crate::command::Commands;
 use crate::family::Family;
 use crate::files::{FileAction, FileAnswer, FileDialog, FileKind};
-use crate::model::Model;
-use crate::model::indicator::IndicatorState;
 use crate::model::traffic::{Filter, Log, Outcome, Traffic, Transaction};
-use crate::theme;
-use crate::theme::Palette;
-use crate::widgets::text_field::text_field_ui;
+use crate::model::{IndicatorState, Model};
+use crate::theme::{self, Palette};
+use crate::widgets::{choice_ui, text_field_ui};
 
 const ROW_HEIGHT: f32 = 18.0;
 const TIME_WIDTH: f32 = 92.0;
@@ -45,7 +43,7 @@ pub fn head_ui(ui: &mut Ui, model: &mut Model, _commands: &mut Commands) {
         let count = traffic.log.shown_len();
         model.messages.note(format!("Copied {count} transactions."));
     }
-    let paused = model.front.traffic.log.is_paused();
+    let paused = model.front.traffic.log.paused;
     let pause = if paused { "Record again" } else { "Pause log" };
     if ui.button(pause).on_hover_text("Stops and continues the recording; the link goes on").clicked() {
         model.front.traffic.log.set_paused(!paused);
@@ -61,7 +59,7 @@ pub fn log_ui(ui: &mut Ui, model: &mut Model, _commands: &mut Commands) {
     summary_ui(ui, &traffic.log);
     if traffic.log.shown_len() == 0 {
         let hint = hint(traffic, connected);
-        ui.label(RichText::new(hint).color(Palette::of(ui).weak_text));
+        ui.weak(hint);
     }
     ui.spacing_mut().item_spacing.y = 0.0;
     let list = ScrollArea::vertical().id_salt("traffic").auto_shrink([false, false]).stick_to_bottom(true);
@@ -75,7 +73,7 @@ pub fn log_ui(ui: &mut Ui, model: &mut Model, _commands: &mut Commands) {
 }
 
 fn hint(traffic: &Traffic, connected: bool) -> &'static str {
-    match (traffic.log.is_empty(), traffic.log.is_paused(), connected) {
+    match (traffic.log.is_empty(), traffic.log.paused, connected) {
         (false, ..) => "Nothing passes the filter.",
         (true, true, _) => "Paused. Press Record again to go on.",
         (true, false, true) => "Nothing has gone over the wire since the panel was opened.",
@@ -96,15 +94,9 @@ fn filter_ui(ui: &mut Ui, log: &mut Log, family: &dyn Family) {
             None => "All commands".to_owned(),
             Some(number) => format!("{number} {}", family.command_title(number)),
         };
-        let combo =
-            ComboBox::from_id_salt("traffic command").width(190.0).selected_text(text(filter.command));
-        let shown = combo.show_ui(ui, |ui| {
-            let each = log.commands().into_iter().map(Some);
-            for command in std::iter::once(None).chain(each) {
-                ui.selectable_value(&mut filter.command, command, text(command));
-            }
-        });
-        ui.ctx().accesskit_node_builder(shown.response.id, |node| node.set_label("Command"));
+        let each = std::iter::once_with(|| log.commands()).flatten().map(Some);
+        let list = ComboBox::from_id_salt("traffic command").width(190.0);
+        choice_ui(ui, list, "Command", &mut filter.command, std::iter::once(None).chain(each), text);
         ui.checkbox(&mut filter.only_failures, "Only failures");
     });
     log.set_filter(filter);
@@ -112,13 +104,13 @@ fn filter_ui(ui: &mut Ui, log: &mut Log, family: &dyn Family) {
 
 fn summary_ui(ui: &mut Ui, log: &Log) {
     let mut text = format!("{} of {} transactions", log.shown_len(), log.len());
-    if log.dropped() > 0 {
-        text += &format!(", {} older ones dropped", log.dropped());
+    if log.dropped > 0 {
+        text += &format!(", {} older ones dropped", log.dropped);
     }
-    if log.is_paused() || log.missed() > 0 {
-        text += &format!(", {} packets not recorded while paused", log.missed());
+    if log.paused || log.missed > 0 {
+        text += &format!(", {} packets not recorded while paused", log.missed);
     }
-    ui.label(RichText::new(text).small().color(Palette::of(ui).weak_text));
+    ui.label(RichText::new(text).small().weak());
 }
 
 /// The name of the file to save to, while one is asked for.

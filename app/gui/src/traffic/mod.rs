@@ -1,13 +1,12 @@
 //! The traffic panel: every transaction as it goes over the wire, one command put together by hand, and the bytes that wait to
 //! be sent. It lies below any screen, so that one can watch while driving.
 
-use egui::{Key, RichText, Ui};
+use egui::{Key, Ui};
 
 use super::command::Commands;
 use super::model::Model;
 use super::model::traffic::Tab;
 use super::screens::face;
-use super::theme::Palette;
 use super::widgets::heading::heading_ui;
 
 mod log;
@@ -39,7 +38,7 @@ pub fn traffic_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         Tab::Composer => {
             if !face::of(model.front.family()).composer_ui(ui, model, commands) {
                 let hint = "Not connected. A command can be put together here and sent to a controller.";
-                ui.label(RichText::new(hint).color(Palette::of(ui).weak_text));
+                ui.weak(hint);
             }
         }
         Tab::Pending => pending::pending_ui(ui, model),

@@ -17,11 +17,11 @@ pub fn pending_ui(ui: &mut Ui, model: &Model) {
         if packets.is_empty() && refusals.is_empty() {
             let hint = "Nothing waits to be sent. Settings that were changed and not written yet are shown here as the packets \
                         that will write them; on a screen that drives, what its sliders stand for.";
-            ui.label(RichText::new(hint).color(palette.weak_text));
+            ui.weak(hint);
         }
         for packet in &packets {
             ui.label(format!("{}: {}", packet.title, packet.text));
-            ui.add(Label::new(RichText::new(hex(&packet.bytes)).monospace().color(palette.weak_text)).wrap());
+            ui.add(Label::new(RichText::new(hex(&packet.bytes)).monospace().weak()).wrap());
         }
     });
 }

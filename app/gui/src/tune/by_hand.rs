@@ -5,16 +5,10 @@ use brushwork_values::Motor;
 use egui::{Button, Label, RichText, Ui};
 
 use super::calibration::{Advice, Calibration};
-use super::figures::indicator_ui;
-use super::model::TuneAction;
-use super::which::Loop;
+use super::{Loop, TuneAction};
 use crate::command::{Command, Commands};
-use crate::model::Model;
-use crate::model::drawer::Tab;
-use crate::model::indicator::IndicatorState;
-use crate::model::screen::Screen;
-use crate::theme;
-use crate::theme::Palette;
+use crate::model::{IndicatorState, Model, Screen, Tab};
+use crate::theme::{self, Palette};
 use brushwork_core::tune::law::AnyRegisters;
 use brushwork_tuning::registers::RegisterTable as _;
 
@@ -22,7 +16,7 @@ pub fn by_hand_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let Some(which) = Loop::of(model.screen) else { return };
     head_ui(ui, model, which, commands);
     let calibration = model.front.tune.calibration(which);
-    let (motor, at) = (calibration.motor, calibration.step());
+    let (motor, at) = (calibration.motor, calibration.step);
     let held = model.front.held_gains(motor, which == Loop::Position);
     let step = &Calibration::steps(which)[at];
     ui.add(Label::new(step.text).wrap());
@@ -51,7 +45,7 @@ pub fn by_hand_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 
 /// Motor, steps, and how often is looked.
 fn head_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands) {
-    let palette = Palette::of(ui);
+    let _palette = Palette::of(ui);
     let poll = model.front.poll;
     let calibration = model.front.tune.calibration_mut(which);
     ui.horizontal_wrapped(|ui| {
@@ -61,7 +55,7 @@ fn head_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands)
             }
         }
         ui.separator();
-        let at = calibration.step();
+        let at = calibration.step;
         let steps = Calibration::steps(which);
         for (index, step) in steps.iter().enumerate() {
             if ui.selectable_label(index == at, format!("{}. {}", index + 1, step.title)).clicked() {
@@ -73,7 +67,7 @@ fn head_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands)
             calibration.go_to(which, at + 1);
         }
         if poll == PollRate::Fastest {
-            ui.label(RichText::new("sampling as fast as the link allows").small().color(palette.weak_text));
+            ui.label(RichText::new("sampling as fast as the link allows").small().weak());
         } else {
             let faster = ui.button("Sample faster");
             let hint = "As fast as the link allows: vibrations are seen better";
@@ -95,16 +89,16 @@ fn travel_speed_ui(ui: &mut Ui, model: &mut Model, motor: Motor) {
 
 /// What the controller holds of the gains that this procedure turns.
 fn held_ui(ui: &mut Ui, which: Loop, held: Option<AnyRegisters>) {
-    let palette = Palette::of(ui);
+    let _palette = Palette::of(ui);
     let Some(held) = held else { return };
-    ui.label(RichText::new("In the controller:").small().color(palette.weak_text));
+    ui.label(RichText::new("In the controller:").small().weak());
     let keys: &[&str] = match which {
         Loop::Velocity => &["velocity.p", "velocity.i", "velocity.d"],
         Loop::Position => &["position.p", "position.i", "position.d", "position.max_i", "position.deadzone"],
     };
     for field in AnyRegisters::fields().into_iter().filter(|field| keys.contains(&field.key)) {
         if let Some(value) = held.value(field) {
-            ui.label(RichText::new(field.label).small().color(palette.weak_text));
+            ui.label(RichText::new(field.label).small().weak());
             ui.label(RichText::new(field.text(value)).text_style(theme::figures()));
         }
     }
@@ -112,9 +106,9 @@ fn held_ui(ui: &mut Ui, which: Loop, held: Option<AnyRegisters>) {
 
 fn advice_ui(ui: &mut Ui, advice: &Advice) {
     match advice {
-        Advice::Wait(text) => indicator_ui(ui, IndicatorState::Unknown, text),
-        Advice::Good(text) => indicator_ui(ui, IndicatorState::Ok, text),
-        Advice::Change(text) => indicator_ui(ui, IndicatorState::Warning, text),
-        Advice::Danger(text) => indicator_ui(ui, IndicatorState::Error, text),
+        Advice::Wait(text) => IndicatorState::Unknown.line_ui(ui, text),
+        Advice::Good(text) => IndicatorState::Ok.line_ui(ui, text),
+        Advice::Change(text) => IndicatorState::Warning.line_ui(ui, text),
+        Advice::Danger(text) => IndicatorState::Error.line_ui(ui, text),
     }
 }

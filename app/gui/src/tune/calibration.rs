@@ -28,7 +28,7 @@ const MUCH_OVERSHOOT: f64 = 0.25;
 #[derive(Clone, Debug)]
 pub struct Calibration {
     pub motor: Motor,
-    step: usize,
+    pub step: usize,
     observers: [Observer; 2],
 }
 
@@ -198,10 +198,6 @@ pub enum Advice {
 impl Calibration {
     pub fn steps(which: Loop) -> &'static [Step] {
         if which == Loop::Velocity { &VELOCITY_STEPS } else { &POSITION_STEPS }
-    }
-
-    pub fn step(&self) -> usize {
-        self.step
     }
 
     pub fn go_to(&mut self, which: Loop, step: usize) {

@@ -3,7 +3,6 @@
 use egui::{Label, Response, RichText, Ui, vec2};
 
 use super::run::Shown;
-use crate::model::indicator::IndicatorState;
 use crate::theme;
 
 type Figure = (&'static str, &'static str, fn(&Shown) -> String);
@@ -45,12 +44,4 @@ pub fn figure_ui(ui: &mut Ui, text: &str, width: f32) -> Response {
         ui.add(Label::new(RichText::new(text).text_style(theme::figures())).truncate())
     })
     .inner
-}
-
-pub fn indicator_ui(ui: &mut Ui, state: IndicatorState, text: &str) {
-    ui.horizontal(|ui| {
-        let (rect, _) = ui.allocate_exact_size(vec2(18.0, 18.0), egui::Sense::hover());
-        state.paint(ui, rect.center(), 6.0);
-        ui.add(Label::new(text).wrap());
-    });
 }

@@ -5,9 +5,7 @@ use std::path::{Path, PathBuf};
 use brushwork_core::tune::law::Report;
 use egui::{Button, Ui, vec2};
 
-use super::asked::Asked;
-use super::model::{TuneAction, Tuning};
-use super::which::Loop;
+use super::{Asked, Loop, TuneAction, Tuning};
 use crate::command::{Command, Commands};
 use crate::files::{FileAction, FileAnswer, FileDialog, FileKind};
 use crate::frame::FRAME_INTERVAL;

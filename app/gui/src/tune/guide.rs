@@ -5,9 +5,7 @@ use egui::{
     UiBuilder, vec2,
 };
 
-use super::model::{TuneAction, Tuning};
-use super::which::Loop;
-use super::{plots, result, setup};
+use super::{Loop, TuneAction, Tuning, plots, result, setup};
 use crate::command::{Command, Commands};
 use crate::model::Model;
 use crate::theme::Palette;
@@ -81,7 +79,7 @@ fn time_left(seconds: f64) -> String {
 /// What goes on, how long it will take, and the button that ends it.
 fn progress_ui(ui: &mut Ui, tuning: &Tuning, which: Loop, commands: &mut Commands) {
     let Some(sequence) = tuning.running() else { return };
-    let palette = Palette::of(ui);
+    let _palette = Palette::of(ui);
     let left = super::remaining::remaining(sequence);
     ui.horizontal(|ui| {
         ui.heading(format!("Tuning {}", tuning.motor(which)));
@@ -98,6 +96,6 @@ fn progress_ui(ui: &mut Ui, tuning: &Tuning, which: Loop, commands: &mut Command
     ui.horizontal(|ui| {
         ui.label(sequence.text());
         let note = "The gains are tried in RAM only; the old ones are put back at the end, whatever happens.";
-        ui.label(RichText::new(note).small().color(palette.weak_text));
+        ui.label(RichText::new(note).small().weak());
     });
 }

@@ -31,3 +31,10 @@ mod winding;
 
 pub use model::{TuneAction, Tuning};
 pub use which::Loop;
+
+pub use asked::Asked;
+pub use figures::{FIGURES, figure_ui};
+pub use looked_at::View;
+pub use measured::Figures;
+pub use run::Run;
+pub use sequence::{Next, Origin, Sequence, Work};

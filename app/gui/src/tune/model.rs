@@ -1,28 +1,19 @@
 //! Tuning as the window keeps it: what is set, what runs, and the runs so far, for each loop of each motor.
 
-use brushwork_core::tune::law::{Report, Request as TuneRequest, Setup, Trial};
-use brushwork_link::device::{Event, Identity, Sample};
-use brushwork_link::settings::SettingValue;
-use brushwork_link::transport::Stream;
+use brushwork_core::tune::law::{AnyRegisters, Report, Request as TuneRequest, Setup, Trial};
+use brushwork_link::{Event, Identity, Sample, SettingValue, Stream};
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::experiment_guard::GuardOptions;
 use brushwork_tuning::report::Verdict;
 use brushwork_tuning::tune::{Excitation, Method};
 use brushwork_values::Motor;
 
-use super::asked::Asked;
 use super::calibration::Calibration;
-use super::looked_at::View;
-use super::run::Run;
-use super::sequence::{Ended, Next, Origin, Sequence, Work};
-use super::which::Loop;
+use super::sequence::Ended;
+use super::{Asked, Loop, Next, Origin, Run, Sequence, View, Work};
 use crate::family::Family;
-use crate::model::link::{Arming, Effect};
-use crate::model::message::Gravity;
-use crate::model::screen::Screen;
-use crate::model::settings::SettingsAction;
+use crate::model::{Arming, Effect, Gravity, Screen, SettingsAction};
 use brushwork_core::tune::Target;
-use brushwork_core::tune::law::AnyRegisters;
 
 /// How often L and R are written back before that is given up.
 const MOST_WRITES: u8 = 4;

@@ -4,7 +4,7 @@ use brushwork_core::tune::law::Trace;
 use brushwork_tuning::experiment_guard::{Drive, Input};
 use brushwork_tuning::trace::{Predicted, Stretch};
 use brushwork_tuning::whatif::{LoopPoint, Reply};
-use egui::{Color32, RichText, Ui, vec2};
+use egui::{Color32, Ui, vec2};
 
 use super::chart::{Axis, Line, Look, chart_ui};
 use super::looked_at::{Kind, View};
@@ -66,7 +66,7 @@ fn record_ui(ui: &mut Ui, trace: &Trace, which: Loop, end_s: f64, empty: &str) {
 /// The picture of a result, with what chooses it.
 pub fn result_ui(ui: &mut Ui, panel: &Panel, view: &mut View, which: Loop) {
     if panel.run().is_some_and(Run::is_refused) {
-        ui.label(RichText::new("What was seen").strong());
+        ui.strong("What was seen");
     } else {
         kinds_ui(ui, view);
     }

@@ -3,16 +3,10 @@
 use brushwork_tuning::cause::Cause;
 use egui::{Button, Label, RichText, Ui};
 
-use super::figures::indicator_ui;
-use super::model::TuneAction;
-use super::run::Run;
 use super::sketches::{Sketch, sketch_ui};
-use super::which::Loop;
+use super::{Loop, Run, TuneAction};
 use crate::command::{Command, Commands};
-use crate::model::Model;
-use crate::model::indicator::IndicatorState;
-use crate::model::watched::interruption;
-use crate::theme::Palette;
+use crate::model::{IndicatorState, Model, interruption};
 
 /// What to do, in the order in which it is best tried.
 #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
@@ -144,11 +138,8 @@ fn clearing_ui(ui: &mut Ui, model: &Model, which: Loop, commands: &mut Commands)
 /// Says that L and R are cleared, with the way back.
 pub fn cleared_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     let Some(motor) = model.front.tune.cleared_winding() else { return };
-    indicator_ui(
-        ui,
-        IndicatorState::Warning,
-        &format!("L and R of {motor} are cleared. They are put back after the run."),
-    );
+    IndicatorState::Warning
+        .line_ui(ui, &format!("L and R of {motor} are cleared. They are put back after the run."));
     if ui.button("Put L and R back").on_hover_text("Now, without a run").clicked() {
         commands.push(Command::Tune(TuneAction::PutWindingBack));
     }
@@ -166,8 +157,7 @@ pub fn refusal_ui(ui: &mut Ui, model: &Model, which: Loop, commands: &mut Comman
     let Some(run) = model.front.tune.front(which).run() else { return };
     let motor = model.front.tune.motor(which);
     let head = format!("{motor} was not tuned · run {} · {:.1} s", run.number, run.report.seconds.1);
-    indicator_ui(ui, IndicatorState::Error, &head);
-    let weak = Palette::of(ui).weak_text;
+    IndicatorState::Error.line_ui(ui, &head);
     let is_armed = model.front.link.arming.is_armed_for(which.scope());
     ui.horizontal_wrapped(|ui| {
         let can_start = is_armed && !model.front.is_guided();
@@ -177,7 +167,7 @@ pub fn refusal_ui(ui: &mut Ui, model: &Model, which: Loop, commands: &mut Comman
         }
         clearing_ui(ui, model, which, commands);
         if !is_armed {
-            ui.label(RichText::new("Arm this screen to try again.").small().color(weak));
+            ui.label(RichText::new("Arm this screen to try again.").small().weak());
         }
     });
     for (index, cause) in run.report.causes.iter().enumerate() {
@@ -191,6 +181,6 @@ pub fn refusal_ui(ui: &mut Ui, model: &Model, which: Loop, commands: &mut Comman
         }
     }
     if !model.front.tune.is_owing() {
-        ui.label(RichText::new("The motors were stopped and the old gains are in force.").color(weak));
+        ui.weak("The motors were stopped and the old gains are in force.");
     }
 }

@@ -1,24 +1,17 @@
 //! What a run has found: its verdict, the gains as current, proposed and change, what they promise, and the runs so far.
 
-use brushwork_core::tune::law::Report;
+use brushwork_core::tune::law::{AnyRegisters, Report};
 use brushwork_tuning::report::Verdict;
 use brushwork_tuning::tune::Method;
 use egui::{Button, Grid, Label, RichText, Ui, vec2};
 
-use super::figures::{FIGURES, figure_ui, indicator_ui};
 use super::files::files_ui;
-use super::measured::Figures;
-use super::model::TuneAction;
-use super::run::Run;
-use super::which::Loop;
 use super::winding::{unknown_ui, winding_ui};
+use super::{FIGURES, Figures, Loop, Run, TuneAction, figure_ui};
 use crate::command::{Command, Commands};
-use crate::model::Model;
-use crate::model::general::Sheet;
-use crate::model::indicator::IndicatorState;
+use crate::model::{IndicatorState, Model, Sheet};
 use crate::theme::Palette;
 use crate::widgets::numeric::Numeric;
-use brushwork_core::tune::law::AnyRegisters;
 use brushwork_tuning::registers::{Form, RegisterField, RegisterTable as _};
 
 pub fn result_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands) {
@@ -54,7 +47,7 @@ pub fn result_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Com
 }
 
 fn empty_ui(ui: &mut Ui, model: &Model, which: Loop) {
-    let palette = Palette::of(ui);
+    let _palette = Palette::of(ui);
     let has_piv = model.front.family().methods(which).contains(&Method::Piv);
     let text = match which {
         Loop::Position if !has_piv => {
@@ -72,7 +65,7 @@ fn empty_ui(ui: &mut Ui, model: &Model, which: Loop) {
         }
     };
     ui.add_space(6.0);
-    ui.add(Label::new(RichText::new(text).color(palette.weak_text)).wrap());
+    ui.add(Label::new(RichText::new(text).weak()).wrap());
     ui.add_space(6.0);
 }
 
@@ -83,9 +76,9 @@ fn verdict_ui(ui: &mut Ui, run: &Run) {
         Verdict::TunedWithWarnings => (IndicatorState::Warning, "Tuned with warnings"),
         Verdict::Refused => (IndicatorState::Error, "Refused"),
     };
-    indicator_ui(ui, state, &format!("{word} · run {} · {:.1} s", run.number, report.seconds.1));
+    state.line_ui(ui, &format!("{word} · run {} · {:.1} s", run.number, report.seconds.1));
     for cause in &report.causes {
-        indicator_ui(ui, IndicatorState::Warning, &cause.sentence());
+        IndicatorState::Warning.line_ui(ui, &cause.sentence());
     }
 }
 
@@ -95,7 +88,7 @@ fn model_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
     let covered = feed_forward_text(model.front.tune.front(which).run());
     for text in text.into_iter().chain(covered) {
         ui.add_space(4.0);
-        ui.add(Label::new(RichText::new(text).small().color(Palette::of(ui).weak_text)).wrap());
+        ui.add(Label::new(RichText::new(text).small().weak()).wrap());
     }
     match (winding, unknown) {
         (Some(winding), _) => winding_ui(ui, model, which, &winding),
@@ -231,8 +224,7 @@ fn change_text(field: &RegisterField, current: Option<f64>, wanted: Option<f64>)
 
 /// Words above columns of figures, at their right as those are.
 fn heads_ui(ui: &mut Ui, first: &str, others: [(&str, f32); 3]) {
-    let weak = Palette::of(ui).weak_text;
-    let word = |text: &str| Label::new(RichText::new(text).small().color(weak));
+    let word = |text: &str| Label::new(RichText::new(text).small().weak());
     ui.add(word(first));
     for (text, width) in others {
         let size = vec2(width, 14.0);
@@ -250,7 +242,7 @@ fn acts_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands)
     let can_undo = panel.undo.is_some();
     let Some(run) = panel.run_mut() else { return };
     let has_gains = run.shown.is_some();
-    let differs = match (run.held(), &run.shown) {
+    let differs = match (run.looked_at, &run.shown) {
         (Some(held), Some(shown)) => !held.same_gains(&shown.registers),
         _ => true,
     };
@@ -292,8 +284,8 @@ fn acts_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands)
         ui.label(RichText::new(text).small().color(Palette::of(ui).accent));
     }
     match run.verified {
-        Some(Ok(())) => indicator_ui(ui, IndicatorState::Ok, "Verified: the machine behaves as predicted."),
-        Some(Err(cause)) => indicator_ui(ui, IndicatorState::Warning, &cause.sentence()),
+        Some(Ok(())) => IndicatorState::Ok.line_ui(ui, "Verified: the machine behaves as predicted."),
+        Some(Err(cause)) => IndicatorState::Warning.line_ui(ui, &cause.sentence()),
         None => {}
     }
 }
@@ -319,17 +311,10 @@ fn figures_ui(ui: &mut Ui, model: &Model, which: Loop) {
         }
     });
     if !shown.forecast.is_stable {
-        indicator_ui(
-            ui,
-            IndicatorState::Error,
-            "Unstable on the model: the motor would oscillate ever more. Lower the gains.",
-        );
+        IndicatorState::Error
+            .line_ui(ui, "Unstable on the model: the motor would oscillate ever more. Lower the gains.");
     } else if shown.forecast.ms > 2.0 {
-        indicator_ui(
-            ui,
-            IndicatorState::Warning,
-            "Ms above 2: a little more load or lag could make it oscillate.",
-        );
+        IndicatorState::Warning.line_ui(ui, "Ms above 2: a little more load or lag could make it oscillate.");
     }
     super::limits::limits_ui(ui, run);
 }

@@ -66,7 +66,7 @@ pub struct Run {
     pub is_overlaid: bool,
     /// What is drawn of the gains that the controller holds.
     current: Option<Shown>,
-    looked_at: Option<AnyRegisters>,
+    pub looked_at: Option<AnyRegisters>,
 }
 
 impl Run {
@@ -169,11 +169,6 @@ impl Run {
             self.current = held.and_then(|registers| self.on_model(registers));
             self.looked_at = wanted;
         }
-    }
-
-    /// What the controller holds, as last read.
-    pub fn held(&self) -> Option<AnyRegisters> {
-        self.looked_at
     }
 
     pub fn current(&self) -> Option<&Shown> {

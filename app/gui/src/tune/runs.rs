@@ -2,9 +2,7 @@
 
 use egui::{Align, Color32, Grid, Label, Layout, RichText, Sense, Ui, vec2};
 
-use super::figures::{FIGURES, figure_ui};
-use super::run::Run;
-use super::which::Loop;
+use super::{FIGURES, Loop, Run, figure_ui};
 use crate::model::Model;
 use crate::theme::Palette;
 use brushwork_core::tune::law::AnyRegisters;
@@ -40,7 +38,7 @@ pub fn runs_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
         return;
     }
     ui.add_space(6.0);
-    ui.label(RichText::new("Runs so far").strong());
+    ui.strong("Runs so far");
     let mut chosen = panel.chosen;
     Grid::new("tune runs").striped(true).spacing(vec2(GAP, 2.0)).show(ui, |ui| {
         heads_ui(ui);
@@ -61,8 +59,7 @@ pub fn runs_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
 }
 
 fn heads_ui(ui: &mut Ui) {
-    let color = Palette::of(ui).weak_text;
-    let word = |text: &str| Label::new(RichText::new(text).small().color(color));
+    let word = |text: &str| Label::new(RichText::new(text).small().weak());
     ui.add(word("run"));
     ui.add(word("drawn"));
     for (head, width) in COLUMNS {

@@ -7,14 +7,13 @@
 use std::sync::PoisonError;
 
 use brushwork_core::tune::law::{Report, Request as TuneRequest, Setup, Trace, Trial, TrialRequest};
-use brushwork_link::device::{ArmScope, Event, JobEnding, JobId, JobTicket, QueuedJob};
-use brushwork_link::exchange::Interruption;
-use brushwork_link::settings::Subject;
+use brushwork_link::device::JobId;
+use brushwork_link::{ArmScope, Event, Interruption, JobEnding, JobTicket, QueuedJob, Subject};
 
 use crate::model::link::Arming;
 use crate::model::watched::interruption;
 use brushwork_core::keep::TrialKeeper;
-use brushwork_core::tune::tap::Live;
+use brushwork_core::tune::live::Live;
 use brushwork_core::tune::{self as jobs, Restored, Slot, Target, take};
 
 /// How often putting the gains back is asked for again when something breaks into it.
@@ -210,7 +209,7 @@ impl Sequence {
             }
             Stage::Preparing => jobs::prepare(self.target, subject, &self.setup, &keeper),
             Stage::Running => match &self.work {
-                Work::Tune(request) => jobs::run_watched(self.target, *request, &self.found, &self.live),
+                Work::Tune(request) => jobs::run(self.target, *request, &self.found, &self.live),
                 Work::Try(wanted) => jobs::trial(self.target, **wanted, &self.tried, &self.live),
                 Work::PutBack => return None,
             },

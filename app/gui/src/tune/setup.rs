@@ -27,7 +27,7 @@ const WHAT_IT_DOES: &str = "Checks the wiring with little duty, measures the mot
     Nothing stays in the controller until you apply it.";
 
 pub fn setup_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands) {
-    let palette = Palette::of(ui);
+    let _palette = Palette::of(ui);
     let is_armed = model.front.link.arming.is_armed_for(which.scope());
     let is_free = !model.front.is_guided();
     let can_start = is_armed && is_free;
@@ -51,7 +51,7 @@ pub fn setup_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Comm
     } else {
         "Arm this screen to tune. Looking at results and trying gains on the model needs no arming."
     };
-    ui.add(Label::new(RichText::new(hint).small().color(palette.weak_text)).wrap());
+    ui.add(Label::new(RichText::new(hint).small().weak()).wrap());
 }
 
 fn motor_row_ui(
@@ -75,7 +75,7 @@ fn motor_row_ui(
     let mut level = panel.level();
     ui.label("Level");
     if is_wide {
-        ui.label(RichText::new("soft").small().color(Palette::of(ui).weak_text));
+        ui.label(RichText::new("soft").small().weak());
     }
     let hint = "How stiff the loop is made. After a run it redraws what the gains of another level would do, without moving anything.";
     if level_ui(ui, &format!("{motor} level"), hint, if is_wide { 136.0 } else { 104.0 }, &mut level) {
@@ -86,7 +86,7 @@ fn motor_row_ui(
         model.front.tune.look_at(which, motor);
     }
     if is_wide {
-        ui.label(RichText::new("stiff").small().color(Palette::of(ui).weak_text));
+        ui.label(RichText::new("stiff").small().weak());
     }
 }
 
@@ -101,7 +101,7 @@ fn options_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
     let encoder_width = if has_encoders { 0.0 } else { ENCODER_WIDTH };
     let is_wide = ui.available_width() >= OPTIONS_IN_A_ROW[which as usize] + travel_width - encoder_width;
     ui.horizontal(|ui| {
-        ui.label(RichText::new(format!("Motor {}:", motor.index() + 1)).strong());
+        ui.strong(format!("Motor {}:", motor.index() + 1));
         methods_ui(ui, setting, methods);
         // A velocity loop has no use for position limits, which may be left over.
         travel_ui(ui, setting, travel.filter(|_| which == Loop::Position));
@@ -139,14 +139,7 @@ fn limits_ui(ui: &mut Ui, setting: &mut Setting, has_encoders: bool) {
         Numeric { name: "Highest duty", unit: "%", range: 20.0..=100.0, decimals: 0, step: 5.0, width: 62.0 };
     duty.ui(ui, &mut setting.max_duty_percent).on_hover_text("The run never gives more");
     ui.label("Current up to");
-    let amps = Numeric {
-        name: "Highest current",
-        unit: "A",
-        range: 0.0..=200.0,
-        decimals: 1,
-        step: 0.5,
-        width: 70.0,
-    };
+    let amps = Numeric::new("Highest current", "A", 0.0..=200.0, (1, 0.5, 70.0));
     amps.ui(ui, &mut setting.max_amps)
         .on_hover_text("The run ends above it; 0 leaves it to the controller's own limit");
     ui.separator();

@@ -12,13 +12,8 @@ pub enum Loop {
 }
 
 impl Loop {
-    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
-    pub const fn of(screen: Screen) -> Option<Self> {
-        match screen {
-            Screen::Velocity => Some(Self::Velocity),
-            Screen::Position => Some(Self::Position),
-            _ => None,
-        }
+    pub fn of(screen: Screen) -> Option<Self> {
+        [Self::Velocity, Self::Position].into_iter().find(|which| which.screen() == screen)
     }
 
     pub const fn screen(self) -> Screen {

@@ -4,9 +4,8 @@ use brushwork_tuning::winding::{Winding, WindingUnknown};
 use egui::{Button, Label, RichText, Ui};
 
 use super::which::Loop;
-use crate::model::Model;
-use crate::model::settings::UnitSettings;
-use crate::theme::Palette;
+use crate::model::loop_settings::RESISTANCE;
+use crate::model::{Model, UnitSettings};
 
 /// Offers the measured resistance, and says what setting it does.
 pub fn winding_ui(ui: &mut Ui, model: &mut Model, which: Loop, winding: &Winding) {
@@ -22,7 +21,7 @@ pub fn winding_ui(ui: &mut Ui, model: &mut Model, which: Loop, winding: &Winding
         if enter.on_hover_text(hint).clicked()
             && let Some(unit) = model.front.settings.unit_mut()
         {
-            unit.edit_resistance(motor, winding.ohms);
+            unit.edit(motor, RESISTANCE, winding.ohms);
             model.front.loops.note_edit();
         }
     });
@@ -36,5 +35,5 @@ pub fn unknown_ui(ui: &mut Ui, why: WindingUnknown) {
 }
 
 fn weak_ui(ui: &mut Ui, text: &str) {
-    ui.add(Label::new(RichText::new(text).small().color(Palette::of(ui).weak_text)).wrap());
+    ui.add(Label::new(RichText::new(text).small().weak()).wrap());
 }

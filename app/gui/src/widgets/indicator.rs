@@ -3,13 +3,12 @@
 use std::f32::consts::{PI, TAU};
 
 use egui::{
-    Align2, Color32, FontId, Pos2, Rect, Response, Role, Sense, Shape, Stroke, StrokeKind, TextStyle, Ui,
-    Vec2, WidgetInfo, pos2, vec2,
+    Align2, Color32, FontId, Label, Pos2, Rect, Response, Role, Sense, Shape, Stroke, StrokeKind, TextStyle,
+    Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 
 use crate::model::indicator::IndicatorState;
-use crate::theme;
-use crate::theme::Palette;
+use crate::theme::{self, Palette};
 
 impl IndicatorState {
     pub const fn color(self, palette: &Palette) -> Color32 {
@@ -20,6 +19,21 @@ impl IndicatorState {
             Self::Warning => palette.warning,
             Self::Error => palette.error,
         }
+    }
+
+    /// Draws it in the middle of a place of its own.
+    pub fn ui(self, ui: &mut Ui, size: Vec2, radius: f32) -> Response {
+        let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+        self.paint(ui, rect.center(), radius);
+        response
+    }
+
+    /// A line of text with it in front.
+    pub fn line_ui(self, ui: &mut Ui, text: &str) {
+        ui.horizontal(|ui| {
+            self.ui(ui, vec2(18.0, 18.0), 6.0);
+            ui.add(Label::new(text).wrap());
+        });
     }
 
     /// A ring, a dash, a disc, a square, a triangle or a crossed octagon.

@@ -1,6 +1,6 @@
-//! A label of fixed width, so that what stands right of it never moves and rows line up; and the name of a list that unfolds.
+//! A label of fixed width, so that what stands right of it never moves and rows line up.
 
-use egui::{Align2, Response, Role, Sense, TextStyle, Ui, WidgetInfo, vec2};
+use egui::{Align2, Role, Sense, TextStyle, Ui, WidgetInfo, vec2};
 
 use crate::theme::Palette;
 
@@ -13,10 +13,4 @@ pub fn fixed_label_ui(ui: &mut Ui, text: &str, width: f32) {
     font.size -= 1.0;
     let color = Palette::of(ui).weak_text;
     ui.painter().with_clip_rect(rect).text(rect.left_center(), Align2::LEFT_CENTER, text, font, color);
-}
-
-/// Names a list that unfolds, for who cannot see it, and says what it is for.
-pub fn name_combo(ui: &Ui, response: &Response, name: &str, help: &str) {
-    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name));
-    response.clone().on_hover_text(help);
 }

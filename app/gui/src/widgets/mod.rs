@@ -1,6 +1,7 @@
 //! Widgets of our own: each draws one thing and knows nothing of controllers.
 
 pub mod arm_switch;
+pub mod choice;
 pub mod heading;
 pub mod indicator;
 pub mod jog;
@@ -11,3 +12,14 @@ pub mod setpoint;
 pub mod steps;
 pub mod stop;
 pub mod text_field;
+
+pub use choice::choice_ui;
+pub use heading::heading_ui;
+pub use label::fixed_label_ui;
+pub use numeric::Numeric;
+pub use readout::{NO_VALUE, Readout};
+pub use setpoint::Setpoint;
+pub use text_field::text_field_ui;
+
+pub use arm_switch::arm_switch_ui;
+pub use text_field::keep_space;

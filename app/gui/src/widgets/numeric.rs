@@ -18,7 +18,17 @@ pub struct Numeric<'a> {
     pub width: f32,
 }
 
-impl Numeric<'_> {
+impl<'a> Numeric<'a> {
+    /// A field with its name, unit and range; what it shows and how wide it is.
+    pub const fn new(
+        name: &'a str,
+        unit: &'a str,
+        range: RangeInclusive<f64>,
+        (decimals, step, width): (usize, f64, f32),
+    ) -> Self {
+        Self { name, unit, range, decimals, step, width }
+    }
+
     /// Changes `value` in place; [`Response::changed`] tells whether it did.
     pub fn ui(&self, ui: &mut Ui, value: &mut f64) -> Response {
         let height = ui.spacing().interact_size.y;

@@ -2,8 +2,7 @@
 
 use egui::{Align2, Response, Role, Sense, TextStyle, Ui, Vec2, WidgetInfo, pos2, vec2};
 
-use crate::theme;
-use crate::theme::Palette;
+use crate::theme::{self, Palette};
 
 /// One figure: what it is, how wide, in what unit.
 #[derive(Clone, Copy, Debug)]

@@ -5,13 +5,14 @@
 
 use std::ops::RangeInclusive;
 
-use egui::accesskit::{Action, ActionData};
+use egui::accesskit::Action;
 use egui::{
     Align, Button, EventFilter, Key, Layout, Modifiers, Pos2, Rect, Response, Role, Sense, Stroke,
     StrokeKind, Ui, WidgetInfo, pos2, vec2,
 };
 
 use super::numeric::Numeric;
+use super::steps::set_by_reader;
 use crate::theme::Palette;
 
 /// How near zero, in points, the handle must come to catch.
@@ -50,14 +51,12 @@ impl Setpoint<'_> {
         ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
             let width = (ui.available_width() - ENTRY_WIDTH - 56.0).max(120.0);
             held = self.rail_ui(ui, width, value).is_pointer_button_down_on();
-            Numeric {
-                name: &format!("{} exact", self.name),
-                unit: self.unit,
-                range: self.range.clone(),
-                decimals: self.decimals,
-                step: self.step,
-                width: ENTRY_WIDTH,
-            }
+            Numeric::new(
+                &format!("{} exact", self.name),
+                self.unit,
+                self.range.clone(),
+                (self.decimals, self.step, ENTRY_WIDTH),
+            )
             .ui(ui, value);
             let zero = ui.add_enabled(self.has_zero(), Button::new("0")).on_hover_text("Back to zero (Home)");
             zero.widget_info(|| {
@@ -79,7 +78,7 @@ impl Setpoint<'_> {
             *value = self.value_at(pointer.x, &rail);
         }
         *value = self.rounded(*value + self.steps_by_key(ui, &response, *value));
-        if let Some(asked) = asked_by_reader(ui, &response) {
+        if let Some(asked) = set_by_reader(ui, &response) {
             *value = self.rounded(asked);
         }
         response.widget_info(|| WidgetInfo::slider(ui.is_enabled(), *value, self.name));
@@ -182,18 +181,6 @@ fn paint_handle(ui: &Ui, response: &Response, at: Pos2, color: egui::Color32) {
     if let Some(ring) = ring {
         ui.painter().circle_stroke(at, HANDLE_RADIUS, Stroke::new(2.0, ring));
     }
-}
-
-fn asked_by_reader(ui: &Ui, response: &Response) -> Option<f64> {
-    ui.input(|input| {
-        let requests = input.accesskit_action_requests(response.id, Action::SetValue);
-        requests
-            .filter_map(|request| match request.data {
-                Some(ActionData::NumericValue(value)) => Some(value),
-                _ => None,
-            })
-            .last()
-    })
 }
 
 #[cfg(test)]

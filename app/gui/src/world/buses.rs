@@ -4,8 +4,7 @@ use brushwork_plant::world::{CanPeer, I2cDevice, WorldAction, WorldView};
 use egui::{ComboBox, Ui};
 
 use super::{Actions, LABEL_WIDTH, figures_ui, toggle_ui};
-use crate::widgets::heading::heading_ui;
-use crate::widgets::label::fixed_label_ui;
+use crate::widgets::{choice_ui, fixed_label_ui, heading_ui};
 
 /// Registers of a device that are shown.
 const SHOWN: usize = 8;
@@ -53,15 +52,12 @@ fn device_ui(ui: &mut Ui, device: &I2cDevice, actions: &mut Actions) {
 fn peer_ui(ui: &mut Ui, view: &WorldView, actions: &mut Actions) {
     ui.horizontal(|ui| {
         fixed_label_ui(ui, "CAN peer", LABEL_WIDTH);
-        let combo = ComboBox::from_id_salt("can peer").selected_text(title(view.can_peer));
-        let response = combo.show_ui(ui, |ui| {
-            for peer in [CanPeer::Absent, CanPeer::Listening, CanPeer::Echoing] {
-                if ui.selectable_label(view.can_peer == peer, title(peer)).clicked() {
-                    actions.push(WorldAction::SetCanPeer { peer });
-                }
-            }
-        });
-        ui.ctx().accesskit_node_builder(response.response.id, |node| node.set_label("CAN peer"));
+        let (list, mut peer) = (ComboBox::from_id_salt("can peer"), view.can_peer);
+        let peers = [CanPeer::Absent, CanPeer::Listening, CanPeer::Echoing];
+        choice_ui(ui, list, "CAN peer", &mut peer, peers, title);
+        if peer != view.can_peer {
+            actions.push(WorldAction::SetCanPeer { peer });
+        }
         if ui.add_enabled(view.can_peer != CanPeer::Absent, egui::Button::new("Send \"hello\"")).clicked() {
             actions.push(WorldAction::SendCan { bytes: b"hello".to_vec() });
         }

@@ -7,10 +7,7 @@ use super::command::{Command, Commands};
 use super::family::Ability;
 use super::model::Model;
 use super::model::world::WorldPanel;
-use super::theme::Palette;
-use super::widgets::heading::heading_ui;
-use super::widgets::label::fixed_label_ui;
-use super::widgets::numeric::Numeric;
+use crate::widgets::{Numeric, fixed_label_ui, heading_ui};
 
 mod buses;
 mod motor;
@@ -26,9 +23,8 @@ pub fn world_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let mut actions = Vec::new();
     ui.spacing_mut().item_spacing.y = 4.0;
     ui.label(RichText::new("Simulated world").heading());
-    let color = Palette::of(ui).weak_text;
     let note = "What you could do to a real machine by hand. None of it goes over the wire.";
-    ui.label(RichText::new(note).small().color(color));
+    ui.label(RichText::new(note).small().weak());
     unit_ui(ui, view, family.lacks(Ability::EmergencyStop).is_none(), &mut actions);
     supply_ui(ui, view, panel, family.lacks(Ability::LogicBattery).is_none(), &mut actions);
     if family.lacks(Ability::BridgeFaults).is_none() {
@@ -115,8 +111,7 @@ fn supply_ui(ui: &mut Ui, view: &WorldView, panel: &mut WorldPanel, has_logic: b
 
 /// Figures that change by themselves, in digits of one width.
 fn figures_ui(ui: &mut Ui, text: &str) {
-    let color = Palette::of(ui).weak_text;
-    ui.add(egui::Label::new(RichText::new(text).monospace().size(11.5).color(color)).truncate());
+    ui.add(egui::Label::new(RichText::new(text).monospace().size(11.5).weak()).truncate());
 }
 
 /// A check box of what is so; true when it was clicked.

@@ -6,8 +6,7 @@ use egui::{Checkbox, Ui};
 
 use super::{Actions, figures_ui, number, row_ui, toggle_ui};
 use crate::model::world::WorldPanel;
-use crate::widgets::heading::heading_ui;
-use crate::widgets::label::fixed_label_ui;
+use crate::widgets::{fixed_label_ui, heading_ui};
 
 pub fn motor_ui(ui: &mut Ui, motor: Motor, view: &WorldView, panel: &mut WorldPanel, actions: &mut Actions) {
     ui.separator();

@@ -7,8 +7,7 @@ use egui::{ComboBox, Ui};
 use super::motor::name;
 use super::{Actions, number};
 use crate::family::Family;
-use crate::widgets::heading::heading_ui;
-use crate::widgets::label::fixed_label_ui;
+use crate::widgets::{fixed_label_ui, heading_ui};
 
 pub fn pins_ui(ui: &mut Ui, view: &WorldView, family: &dyn Family, actions: &mut Actions) {
     let names = family.world_pins();

@@ -4,9 +4,7 @@ use brushwork_plant::world::{BoardSwitches, WorldAction, WorldView};
 use egui::{ComboBox, Label, RichText, Ui};
 
 use super::{Actions, LABEL_WIDTH, toggle_ui};
-use crate::theme::Palette;
-use crate::widgets::heading::heading_ui;
-use crate::widgets::label::fixed_label_ui;
+use crate::widgets::{choice_ui, fixed_label_ui, heading_ui};
 
 const MODES: [&str; 8] =
     ["R/C", "Analog", "Buttons", "Serial", "Serial PID", "Analog PID", "Factory restore", "Factory test"];
@@ -26,9 +24,8 @@ pub fn switches_ui(ui: &mut Ui, view: &WorldView, actions: &mut Actions) {
             *on = !*on;
         }
     }
-    let color = Palette::of(ui).weak_text;
     let note = "Read at power-up: switch the power off and on, then connect again.";
-    ui.add(Label::new(RichText::new(note).small().color(color)).wrap());
+    ui.add(Label::new(RichText::new(note).small().weak()).wrap());
     if now != before {
         actions.push(WorldAction::SetBoardSwitches { switches: now });
     }
@@ -38,12 +35,7 @@ fn mode_ui(ui: &mut Ui, switches: &mut BoardSwitches) {
     let text = |mode: u8| format!("{mode} {}", MODES[usize::from(mode & 7)]);
     ui.horizontal(|ui| {
         fixed_label_ui(ui, "Mode (2 to 4)", LABEL_WIDTH);
-        let combo = ComboBox::from_id_salt("board mode").width(120.0).selected_text(text(switches.mode));
-        let response = combo.show_ui(ui, |ui| {
-            for mode in 0..8 {
-                ui.selectable_value(&mut switches.mode, mode, text(mode));
-            }
-        });
-        ui.ctx().accesskit_node_builder(response.response.id, |node| node.set_label("Mode switches"));
+        let list = ComboBox::from_id_salt("board mode").width(120.0);
+        choice_ui(ui, list, "Mode switches", &mut switches.mode, 0..8, text);
     });
 }

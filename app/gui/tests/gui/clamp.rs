@@ -57,12 +57,12 @@ fn armed_with(unit: Controller) -> Bench {
 fn run(bench: &mut Bench) {
     bench.press("Start clamp test");
     for _ in 0..400 {
-        if !bench.model().front.general.clamp.is_running() {
+        if !bench.model().front.general.clamp.job.is_running() {
             break;
         }
         bench.pass_ms(500);
     }
-    assert!(!bench.model().front.general.clamp.is_running());
+    assert!(!bench.model().front.general.clamp.job.is_running());
     bench.pass_ms(500);
 }
 
@@ -178,7 +178,7 @@ fn cancel_space_leaving_and_a_frozen_window_each_end_it_with_the_motors_stopped(
         bench.pass_ms(2500);
         assert!(bench.both_stand(), "{way}");
         assert_eq!(bench.model().front.link.arming, Arming::Disarmed, "{way}");
-        assert!(!bench.model().front.general.clamp.is_running(), "{way}");
+        assert!(!bench.model().front.general.clamp.job.is_running(), "{way}");
     }
 }
 

@@ -112,7 +112,7 @@ fn saving_puts_it_into_eeprom_and_is_read_back_from_there() {
     bench.press("Save");
     bench.pass_ms(10_000);
     assert_eq!(stored(&bench).battery.main_max_tenths, 335);
-    assert!(bench.sees("EEPROM: saved"), "{:?}", bench.model().messages.shown());
+    assert!(bench.sees("EEPROM: saved"), "{:?}", bench.model().messages.shown);
     enter(&mut bench, MAX_VOLTS, "30");
     write(&mut bench);
     assert!(bench.sees("EEPROM: 1 not saved"));
@@ -127,7 +127,7 @@ fn what_did_not_take_is_named_with_both_values_and_stays_an_edit() {
     bench.line.swallow(number::SET_MAIN_VOLTAGES, &[0xFF]);
     write(&mut bench);
     assert!(bench.sees_part(&format!("{MAX_VOLTS} was to be 33.5 V and is 60.0 V")));
-    assert_eq!(bench.model().messages.shown().unwrap().gravity, Gravity::Error);
+    assert_eq!(bench.model().messages.shown.as_ref().unwrap().gravity, Gravity::Error);
     bench.press("Back");
     assert!(bench.sees("Edits: 1 not written"), "the edit is kept");
     assert!(bench.sees_part(&format!("{MAX_VOLTS}: {MAX_VOLTS} was to be 33.5 V")), "its row says why");
@@ -381,10 +381,10 @@ fn reading_that_nobody_asked_for_delays_nothing_and_is_begun_again() {
 fn the_stop_key_stops_and_closes_the_sheet_while_one_is_open() {
     let mut bench = opened();
     bench.press("Save to EEPROM");
-    assert_eq!(bench.model().front.general.sheet(), Some(&Sheet::Save));
+    assert_eq!(bench.model().front.general.sheet.as_ref(), Some(&Sheet::Save));
     assert!(bench.sees("Stop All"), "no sheet covers it");
     bench.key(Key::Escape);
-    assert_eq!(bench.model().front.general.sheet(), None);
+    assert_eq!(bench.model().front.general.sheet.as_ref(), None);
     bench.pass_ms(300);
     assert!(bench.sees_part("Stopped."));
 }
@@ -435,7 +435,7 @@ fn a_profile_is_saved_opened_compared_and_taken_over_by_row() {
     bench.pass_ms(6000);
     bench.press("Open profile");
     bench.press("Open");
-    assert_eq!(bench.model().front.general.sheet(), Some(&Sheet::Compare));
+    assert_eq!(bench.model().front.general.sheet.as_ref(), Some(&Sheet::Compare));
     assert!(bench.sees(&format!("{MAX_VOLTS}: 60.0 V -> 33.5 V")));
     assert!(bench.sees("Main battery minimum: 10.0 V -> 12.0 V"));
     bench.press(&format!("Take over {MAX_VOLTS}"));
@@ -478,15 +478,15 @@ fn a_faulty_profile_is_refused_and_one_of_another_controller_is_upgraded_when_th
     bench.model().front.general.profiles.path = path.display().to_string();
     bench.pass_ms(200);
     bench.press("Open");
-    assert_eq!(bench.model().front.general.sheet(), Some(&Sheet::Upgrade));
+    assert_eq!(bench.model().front.general.sheet.as_ref(), Some(&Sheet::Upgrade));
     assert!(bench.sees_part("The profile was made for the MCP236"));
     assert!(bench.sees_part("The settings of input DIN3/AN3/P3/ENC1A/TX2 go to DIN7/AN7/P7/ENC1A."));
     assert!(
-        bench.model().front.general.profiles.opened().is_none(),
+        bench.model().front.general.profiles.opened.is_none(),
         "nothing is used before that is agreed to"
     );
     bench.press("Use with these changes");
-    assert_eq!(bench.model().front.general.sheet(), Some(&Sheet::Compare));
+    assert_eq!(bench.model().front.general.sheet.as_ref(), Some(&Sheet::Compare));
     assert!(bench.sees("Motor 1: maximum current: 60.00 A -> 30.00 A"));
     bench.press("Take over group Current limits");
     assert!(bench.sees("Edits: 4 not written"), "{:?}", bench.model().front.settings.unit().unwrap().edits());
@@ -499,7 +499,7 @@ fn a_faulty_profile_is_refused_and_one_of_another_controller_is_upgraded_when_th
     bench.press("Open");
     assert!(bench.sees_part("Expected a whole number, got a text"));
     bench.press("Open without what is wrong");
-    assert_eq!(bench.model().front.general.sheet(), Some(&Sheet::Upgrade));
+    assert_eq!(bench.model().front.general.sheet.as_ref(), Some(&Sheet::Upgrade));
 }
 
 #[test]
@@ -514,7 +514,7 @@ fn a_unit_that_was_given_another_address_keeps_its_edits_here() {
     bench.model().front.settings.unit_mut().unwrap().set("unit.mixing", mixing);
     bench.pass_ms(6000);
     assert_eq!(truth(&bench).unit.address, 130);
-    assert!(bench.sees("Edits: 1 not written"), "{:?}", bench.model().messages.shown());
+    assert!(bench.sees("Edits: 1 not written"), "{:?}", bench.model().messages.shown);
     assert!(bench.sees("Packet serial address on the controller: 130"));
     write(&mut bench);
     assert_eq!((truth(&bench).unit.address, truth(&bench).unit.mixed), (130, 1));

@@ -79,11 +79,15 @@ fn the_list_of_backups_compares_and_restores() {
     let title = backups[0].title();
     bench.press("Backups");
     bench.press(&format!("Compare backup {title}"));
-    assert_eq!(bench.model().front.general.sheet(), Some(&Sheet::Compare));
+    assert_eq!(bench.model().front.general.sheet.as_ref(), Some(&Sheet::Compare));
     assert!(bench.sees(&format!("{TITLE}: 2.500 -> 1.000")));
     bench.press("Backups");
     bench.press(&format!("Restore backup {title}"));
-    assert_eq!(bench.model().front.general.sheet(), Some(&Sheet::Write), "what it changes is shown first");
+    assert_eq!(
+        bench.model().front.general.sheet.as_ref(),
+        Some(&Sheet::Write),
+        "what it changes is shown first"
+    );
     assert!(bench.sees(&format!("{TITLE}: 2.500 -> 1.000")));
     bench.press("Write to controller");
     bench.pass_ms(3000);
@@ -312,12 +316,12 @@ fn after_a_pulled_plug_the_next_connection_tells_old_from_new_and_finishes_it() 
     put_back(&mut bench);
     assert!(bench.sees_part("A write of settings begun"), "told at once, on whatever screen");
     open(&mut bench);
-    assert_eq!(bench.model().front.general.sheet(), Some(&Sheet::Unfinished));
+    assert_eq!(bench.model().front.general.sheet.as_ref(), Some(&Sheet::Unfinished));
     assert!(bench.sees_part("The controller holds a mix: 4 new, 4 old."));
     assert!(bench.sees(&format!("{TITLE} holds the new value 7.000; it was 1.000 before.")));
     assert!(bench.sees("Motor 1: position P holds the old value 0.000; it was to become 7.000."));
     bench.press("Finish with the new values");
-    assert_eq!(bench.model().front.general.sheet(), Some(&Sheet::Write));
+    assert_eq!(bench.model().front.general.sheet.as_ref(), Some(&Sheet::Write));
     bench.press("Write to controller");
     bench.pass_ms(3000);
     assert_eq!(edits(&mut bench), 0);
@@ -357,7 +361,7 @@ fn after_a_power_loss_in_a_write_every_setting_is_told_to_be_old() {
     cut_write(&mut bench, WorldAction::Power { on: false });
     put_back(&mut bench);
     open(&mut bench);
-    assert!(bench.sees_part("All 8 settings hold the old value."), "{:?}", bench.model().messages.shown());
+    assert!(bench.sees_part("All 8 settings hold the old value."), "{:?}", bench.model().messages.shown);
     assert!(
         bench.see("Go back to the old values").accesskit_node().is_disabled(),
         "there is nothing to undo"

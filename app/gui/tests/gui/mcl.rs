@@ -344,7 +344,7 @@ fn every_example_runs_on_the_simulated_controller() {
         bench.press(example.title);
         bench.press("Toolbar Download MCL");
         bench.pass_ms(2500);
-        let held = bench.model().front.script.on_board().map(|source| source.title.clone());
+        let held = bench.model().front.script.on_board.as_ref().map(|source| source.title.clone());
         let opened = front(&mut bench).title();
         assert_eq!(held.as_ref(), Some(&opened), "{:?}", bench.model().messages.past().collect::<Vec<_>>());
         if !bench.model().front.link.arming.is_armed_for(ArmScope::Script) {
@@ -377,7 +377,7 @@ fn a_download_of_a_program_with_errors_shows_them_and_sends_nothing() {
     bench.key(Key::F5);
     bench.pass_ms(1500);
     assert!(bench.sees_part("has 1 error"));
-    assert!(bench.model().front.script.on_board().is_none() && !bench.model().front.script.is_running());
+    assert!(bench.model().front.script.on_board.is_none() && !bench.model().front.script.job.is_running());
 }
 
 #[test]

@@ -77,7 +77,7 @@ fn a_profile_is_saved_opened_compared_and_taken_over() {
     assert_eq!(ram(&bench, "PTERM"), 6_000);
     bench.press("Open profile");
     bench.press("Open");
-    assert_eq!(bench.model().front.general.sheet(), Some(&Sheet::Compare));
+    assert_eq!(bench.model().front.general.sheet.as_ref(), Some(&Sheet::Compare));
     assert!(bench.sees_part("6000 -> 7000") && bench.sees_part("-> 250000"), "{:?}", bench.said());
     bench.press("Take over all");
     assert_eq!(ram(&bench, "PTERM"), 6_000, "taking over writes nothing");
@@ -109,10 +109,10 @@ fn a_profile_of_another_family_is_refused_and_one_of_another_revision_is_taken_o
     bench.model().front.general.profiles.path = older.display().to_string();
     bench.pass_ms(200);
     bench.press("Open");
-    if bench.model().front.general.sheet() == Some(&Sheet::Upgrade) {
+    if bench.model().front.general.sheet.as_ref() == Some(&Sheet::Upgrade) {
         bench.press("Use with these changes");
     }
-    assert_eq!(bench.model().front.general.sheet(), Some(&Sheet::Compare));
+    assert_eq!(bench.model().front.general.sheet.as_ref(), Some(&Sheet::Compare));
     assert!(bench.sees_part("6000 -> 4321"));
 
     let mcp = brushwork_mcp_client::subject(
@@ -131,7 +131,7 @@ fn a_profile_of_another_family_is_refused_and_one_of_another_revision_is_taken_o
     bench.press("Open");
     bench.pass_ms(300);
     assert!(bench.sees_part("MCP236"));
-    assert_ne!(bench.model().front.general.sheet(), Some(&Sheet::Compare), "nothing of it fits");
+    assert_ne!(bench.model().front.general.sheet.as_ref(), Some(&Sheet::Compare), "nothing of it fits");
     assert_eq!(edits(&mut bench), 0);
 }
 
@@ -150,7 +150,11 @@ fn the_list_of_backups_compares_and_restores() {
     let title = backups[0].title();
     bench.press("Backups");
     bench.press(&format!("Restore backup {title}"));
-    assert_eq!(bench.model().front.general.sheet(), Some(&Sheet::Write), "what it changes is shown first");
+    assert_eq!(
+        bench.model().front.general.sheet.as_ref(),
+        Some(&Sheet::Write),
+        "what it changes is shown first"
+    );
     assert!(bench.sees_part("7777 -> 6000"));
     bench.press("Write to controller");
     bench.pass_ms(5000);
@@ -182,7 +186,7 @@ fn a_write_that_a_pulled_cable_cuts_short_is_told_at_the_next_connection_and_fin
     assert!(bench.sees_part("A write of settings begun"), "told at once: {:?}", bench.said());
     bench.press("Registers");
     bench.pass_ms(1000);
-    assert_eq!(bench.model().front.general.sheet(), Some(&Sheet::Unfinished));
+    assert_eq!(bench.model().front.general.sheet.as_ref(), Some(&Sheet::Unfinished));
     assert!(bench.sees_part("The controller holds a mix"));
     bench.press("Finish with the new values");
     bench.press("Write to controller");

@@ -314,7 +314,7 @@ fn leaving_the_screen_ends_a_calibration() {
     bench.press("Device Status");
     bench.pass_ms(3000);
     assert_eq!(truth(&bench), before);
-    assert!(bench.model().front.general.calibration().is_none());
+    assert!(bench.model().front.general.calibration.is_none());
 }
 
 #[test]

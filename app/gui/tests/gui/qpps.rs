@@ -45,7 +45,7 @@ fn armed(preset: &str) -> Bench {
 fn measuring(preset: &str) -> Bench {
     let mut bench = armed(preset);
     bench.press("Measure M1");
-    assert!(bench.model().front.qpps.is_running());
+    assert!(bench.model().front.qpps.job.is_running());
     bench
 }
 
@@ -58,17 +58,17 @@ fn at_full_duty(preset: &str) -> Bench {
         }
         bench.pass_ms(100);
     }
-    panic!("never at full duty: {:?}", bench.model().front.qpps.refusal());
+    panic!("never at full duty: {:?}", bench.model().front.qpps.refusal);
 }
 
 fn finish(bench: &mut Bench) {
     for _ in 0..120 {
-        if !bench.model().front.qpps.is_running() {
+        if !bench.model().front.qpps.job.is_running() {
             break;
         }
         bench.pass_ms(1000);
     }
-    assert!(!bench.model().front.qpps.is_running(), "it ends by itself");
+    assert!(!bench.model().front.qpps.job.is_running(), "it ends by itself");
     bench.pass_ms(300);
     assert_at_rest(bench);
 }
@@ -80,8 +80,8 @@ fn assert_at_rest(bench: &mut Bench) {
 
 /// Why nothing was found.
 fn refusal(bench: &mut Bench) -> String {
-    assert_eq!(bench.model().front.qpps.measured(), None);
-    bench.model().front.qpps.refusal().expect("it says why").to_owned()
+    assert_eq!(bench.model().front.qpps.measured, None);
+    bench.model().front.qpps.refusal.clone().expect("it says why")
 }
 
 #[track_caller]
@@ -90,8 +90,8 @@ fn assert_finds(preset: &str, settle_s: u32, travel_limit: &str) {
     bench.enter("Travel limit", travel_limit);
     bench.press("Measure M1");
     finish(&mut bench);
-    let found = bench.model().front.qpps.measured().copied();
-    let found = found.unwrap_or_else(|| panic!("{:?}", bench.model().front.qpps.refusal()));
+    let found = bench.model().front.qpps.measured;
+    let found = found.unwrap_or_else(|| panic!("{:?}", bench.model().front.qpps.refusal));
     for (run, duty) in [(found.forward, 1.0), (found.reverse, -1.0)] {
         let truth = true_speed(preset, duty, settle_s);
         let error = run.speed.counts_per_s / truth - 1.0;
@@ -162,7 +162,7 @@ fn the_second_motor_is_measured_too_and_the_first_stands() {
     }
     assert!(bench.real_duty(Motor::M2) > 0.5);
     finish(&mut bench);
-    assert_eq!(bench.model().front.qpps.measured().expect("it was measured").motor, Motor::M2);
+    assert_eq!(bench.model().front.qpps.measured.expect("it was measured").motor, Motor::M2);
 }
 
 #[test]
@@ -173,7 +173,7 @@ fn it_needs_an_armed_screen() {
     bench.press("Measure QPPS");
     bench.press("Measure M1");
     bench.pass_ms(2000);
-    assert!(!bench.model().front.qpps.is_running());
+    assert!(!bench.model().front.qpps.job.is_running());
     assert!(bench.both_stand());
 }
 
@@ -294,12 +294,12 @@ fn stop_cancel_disarming_leaving_and_unplugging_in_the_middle_stand_the_motors()
         for after_ms in [300, 2500, 6000] {
             let mut bench = measuring("flywheel");
             bench.pass_ms(after_ms);
-            assert!(bench.model().front.qpps.is_running());
+            assert!(bench.model().front.qpps.job.is_running());
             end(&mut bench);
             // Unplugged, the controller's own time-out of one second stops them.
             bench.pass_ms(1500);
             assert_at_rest(&mut bench);
-            assert!(!bench.model().front.qpps.is_running());
+            assert!(!bench.model().front.qpps.job.is_running());
             let said = bench.model().messages.past().any(|message| message.text.contains(word));
             assert!(said, "{word}: {:?}", bench.model().messages.past().collect::<Vec<_>>());
             bench.pass_ms(2000);

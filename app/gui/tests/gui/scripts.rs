@@ -63,7 +63,7 @@ fn a_real_controller_is_refused_what_is_compiled_here_and_offered_what_can_be_do
     bench.key(Key::Enter);
     bench.until("the download is done", |bench| {
         bench.pass_ms(100);
-        !bench.model().front.script.is_running() && holds(bench) == Content::Foreign
+        !bench.model().front.script.job.is_running() && holds(bench) == Content::Foreign
     });
     // An image of ours in a file is not sent either.
     std::fs::write(&path, compiled(FOREVER)).expect("a folder of ours");

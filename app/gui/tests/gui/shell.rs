@@ -237,7 +237,10 @@ fn a_menu_item_does_what_it_says() {
     // The settings are read first.
     bench.pass_ms(5000);
     assert_eq!(bench.model().screen, Screen::GeneralSettings);
-    assert_eq!(bench.model().front.general.sheet(), Some(&brushwork_gui::model::general::Sheet::Defaults));
+    assert_eq!(
+        bench.model().front.general.sheet.as_ref(),
+        Some(&brushwork_gui::model::general::Sheet::Defaults)
+    );
     bench.press("View");
     bench.press("Dark Theme");
     assert_eq!(bench.model().appearance.theme, egui::ThemePreference::Dark);

@@ -159,7 +159,7 @@ fn arming_is_refused_with_the_reason_while_the_emergency_stop_is_pressed() {
     bench.press("Arm");
     bench.pass_ms(500);
     assert!(!bench.model().front.link.refusals.is_empty(), "{:?}", bench.model().front.link.arming);
-    assert_eq!(bench.model().messages.shown().unwrap().gravity, Gravity::Error);
+    assert_eq!(bench.model().messages.shown.as_ref().unwrap().gravity, Gravity::Error);
     assert!(bench.sees_part("Disarmed: nothing on this screen moves a motor"));
 }
 

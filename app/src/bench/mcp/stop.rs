@@ -5,9 +5,7 @@
 
 use std::time::{Duration, Instant};
 
-use brushwork_link::Failure;
-use brushwork_link::device::{Addresses, DeviceHandle, PollRate, Request};
-use brushwork_link::transport::{ConnectTarget, PortInfo};
+use brushwork_link::{Addresses, ConnectTarget, DeviceHandle, Failure, PollRate, PortInfo, Request};
 use brushwork_mcp_wire::packet_serial::{Generation, number};
 use crossbeam_channel::{Receiver, bounded};
 use egui::Key;

@@ -45,7 +45,7 @@ fn held(axis: &SimulatedMind) -> Vec<i64> {
 fn tried(plant: &MindSpecimen, wanted: &TrialRequest<MotionMindLaw>) -> Trial<MotionMindLaw> {
     let mut axis = Unit::axis(plant);
     let (before, stored) = (held(&axis), axis.carrier.line.unit().eeprom_writes());
-    let trial = run_trial(&mut axis, wanted);
+    let trial = run_trial(&mut axis, wanted, &mut |_| {});
     assert_eq!(held(&axis), before, "the registers from before are in force again");
     assert_eq!(axis.carrier.line.unit().eeprom_writes(), stored);
     // The old gains hold the motor where it stands, as before.

@@ -4,8 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
-use crate::new_file::Replace;
-use crate::shared_args::ConnectArgs;
+use crate::{ConnectArgs, Replace};
 
 /// Arguments of `brushwork firmware`.
 #[derive(Debug, Args)]

@@ -5,9 +5,7 @@ use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::packet_serial::Generation;
 
 use super::args::ImageArgs;
-use crate::exit::Exit;
-use crate::new_file::NewFile;
-use crate::output::Output;
+use crate::{Exit, NewFile, Output};
 
 /// Writes the image.
 pub fn run(args: &ImageArgs, out: &mut Output) -> Result<Exit, Exit> {

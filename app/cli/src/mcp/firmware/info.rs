@@ -8,10 +8,7 @@ use brushwork_mcp_wire::packet_serial::known::{Quirk, generation_text, quirks};
 use serde_json::json;
 
 use super::args::InfoArgs;
-use crate::client::Client;
-use crate::exit::Exit;
-use crate::interrupt::Interrupt;
-use crate::output::Output;
+use crate::{Client, Exit, Interrupt, Output};
 
 /// Connects and prints.
 pub fn run(args: &InfoArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {

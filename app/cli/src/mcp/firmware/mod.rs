@@ -5,9 +5,7 @@ mod image;
 mod info;
 mod update;
 
-use crate::exit::Exit;
-use crate::interrupt::Interrupt;
-use crate::output::Output;
+use crate::{Exit, Interrupt, Output};
 use args::{FirmwareAction, FirmwareArgs};
 
 /// Does what the arguments ask for.

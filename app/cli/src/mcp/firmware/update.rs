@@ -4,23 +4,18 @@ use std::io::{self, IsTerminal as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime};
 
-use brushwork_link::SystemClock;
-use brushwork_link::device::{Event, Request, RiskAccepted};
+use brushwork_link::device::RiskAccepted;
 use brushwork_link::settings::Act;
-use brushwork_link::transport::ConnectTarget;
+use brushwork_link::{ConnectTarget, Event, Request, SystemClock};
 use brushwork_mcp_client::firmware::{Progress, RESUME_NOTE, Sent, risks, suit};
 use brushwork_mcp_wire::loader::{Image, SimulatedImage};
 use brushwork_mcp_wire::models;
 use crossbeam_channel::RecvTimeoutError;
 
 use super::args::UpdateArgs;
-use crate::client;
-use crate::exit::Exit;
-use crate::interrupt::Interrupt;
-use crate::new_file::NewFile;
-use crate::output::{Output, say};
 use crate::settings::ask;
 use crate::settings::controller::Controller;
+use crate::{Exit, Interrupt, NewFile, Output, client, say};
 use brushwork_core::keep::Store;
 use brushwork_core::session::firmware::{LoaderPlace, Upload, UploadEvent};
 
@@ -48,7 +43,7 @@ pub fn run(args: &UpdateArgs, out: &mut Output, interrupt: &Interrupt) -> Result
     let image = fresh_image(args, bytes, &controller)?;
     accept(args, is_simulated(args, &target), &|| controller.breathe())?;
     let backup = back_up(args, &controller, out)?;
-    let place = LoaderPlace::of(&target, controller.simulation());
+    let place = LoaderPlace::of(&target, controller.client.simulation());
     enter_loader(&controller, interrupt)?;
     let sent = follow(&start(place, image)?, interrupt)?;
     done(&sent, Some(&backup), args, out)
@@ -59,7 +54,7 @@ fn fresh_image(args: &UpdateArgs, bytes: Vec<u8>, controller: &Controller<'_>) -
     let mut identity = controller.identity().clone();
     identity.simulated |= args.simulated;
     let model = models::identify(&identity.version_text);
-    suit(bytes, &identity, model, controller.stream()).map_err(|error| not_sent(args, &error))
+    suit(bytes, &identity, model, controller.client.stream).map_err(|error| not_sent(args, &error))
 }
 
 /// The image for a controller that cannot tell who it is any more.
@@ -128,7 +123,7 @@ fn back_up(args: &UpdateArgs, controller: &Controller<'_>, out: &mut Output) -> 
     let mut profile = controller.profile_of(&report, report.image.clone());
     profile.note = format!("before {}", Act::Firmware.label());
     Store::of_user()
-        .back_up(controller.unit(), Act::Firmware, &profile)
+        .back_up(&controller.unit, Act::Firmware, &profile)
         .map_err(|error| Exit::Failed.saying(format!("{error} Nothing was sent.")))?;
     let model = profile.subject.model.key;
     let path = args.backup.clone().unwrap_or_else(|| {

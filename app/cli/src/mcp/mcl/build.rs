@@ -9,9 +9,7 @@ use serde::Serialize;
 
 use super::args::BuildArgs;
 use super::source::{Source, is_standard};
-use crate::exit::Exit;
-use crate::new_file::{NewFile, Replace};
-use crate::output::{Output, OutputError, say};
+use crate::{Exit, NewFile, Output, OutputError, Replace, say};
 
 /// What an image file's name ends with.
 pub const EXTENSION: &str = "mcli";

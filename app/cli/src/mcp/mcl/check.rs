@@ -6,8 +6,7 @@ use serde::Serialize;
 
 use super::args::CheckArgs;
 use super::source::Source;
-use crate::exit::Exit;
-use crate::output::{Output, say};
+use crate::{Exit, Output, say};
 
 /// What is said of one file.
 #[derive(Serialize)]

@@ -8,8 +8,7 @@ use brushwork_script::program::Program;
 
 use super::args::DisasmArgs;
 use super::source::{Source, read_bytes};
-use crate::exit::Exit;
-use crate::output::Output;
+use crate::{Exit, Output};
 
 /// Lists every file.
 pub fn run(args: &DisasmArgs, out: &mut Output) -> Result<Exit, Exit> {

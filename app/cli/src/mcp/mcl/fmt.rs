@@ -8,8 +8,7 @@ use brushwork_script::text::Lines;
 
 use super::args::FmtArgs;
 use super::source::{Source, is_standard};
-use crate::exit::Exit;
-use crate::output::Output;
+use crate::{Exit, Output};
 
 /// Formats every file in its place.
 pub fn run(args: &FmtArgs, out: &mut Output) -> Result<Exit, Exit> {

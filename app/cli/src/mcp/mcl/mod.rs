@@ -11,10 +11,7 @@ pub mod source;
 
 use brushwork_script::mcl::reference;
 
-use crate::exit::Exit;
-use crate::family::Page;
-use crate::interrupt::Interrupt;
-use crate::output::Output;
+use crate::{Exit, Interrupt, Output, Page};
 use args::{MclArgs, MclCommand};
 
 /// Does what was asked for.

@@ -12,9 +12,7 @@ use super::args::RunArgs;
 use super::disasm::program_in;
 use super::rig::{Rig, Run};
 use super::source::{Source, is_standard, read_bytes};
-use crate::exit::Exit;
-use crate::interrupt::Interrupt;
-use crate::output::{Output, OutputError, say};
+use crate::{Exit, Interrupt, Output, OutputError, say};
 
 /// How far the controller goes between two looks at its output.
 const SLICE: Duration = Duration::from_millis(1);

@@ -9,11 +9,9 @@ use brushwork_script::image;
 use serde_json::json;
 
 use super::args::DownloadArgs;
-use crate::exit::Exit;
-use crate::interrupt::Interrupt;
 use crate::mcp::mcl::source::{Source, read_bytes};
-use crate::output::{Output, say};
 use crate::settings::controller::Controller;
+use crate::{Exit, Interrupt, Output, say};
 
 /// How long a download may take: the largest memory at the slowest rates.
 const LIMIT: Duration = Duration::from_secs(1_200);

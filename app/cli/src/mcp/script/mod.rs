@@ -5,9 +5,7 @@ pub mod download;
 mod run;
 mod state;
 
-use crate::exit::Exit;
-use crate::interrupt::Interrupt;
-use crate::output::Output;
+use crate::{Exit, Interrupt, Output};
 use args::{ScriptArgs, ScriptCommand};
 
 /// Does what is asked.

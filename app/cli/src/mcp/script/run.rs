@@ -9,10 +9,8 @@ use brushwork_link::device::{ArmScope, DisarmReason, Event, Request};
 use super::args::{StartArgs, StopArgs};
 use super::download;
 use crate::client::{ANSWER_LIMIT, arm, ask};
-use crate::exit::Exit;
-use crate::interrupt::Interrupt;
-use crate::output::say;
 use crate::settings::controller::Controller;
+use crate::{Exit, Interrupt, say};
 
 /// Downloads if asked to, arms, starts, waits, stops.
 pub fn start(args: &StartArgs, interrupt: &Interrupt) -> Result<Exit, Exit> {
@@ -58,7 +56,7 @@ fn stop_all(controller: &Controller<'_>) -> Result<(), Exit> {
     controller.device().stop_all();
     let deadline = Instant::now() + ANSWER_LIMIT;
     while Instant::now() < deadline {
-        if let Some(Event::Stopped(report)) = controller.next_event_whatever()? {
+        if let Some(Event::Stopped(report)) = controller.client.next_event(&Interrupt::default())? {
             crate::stop::warnings(&report, controller.identity()).into_iter().for_each(say);
             return if report.confirmed() { Ok(()) } else { Err(Exit::Refused) };
         }

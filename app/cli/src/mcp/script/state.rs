@@ -9,10 +9,8 @@ use brushwork_plant::world::{ScriptRun, ScriptView};
 use serde_json::json;
 
 use super::args::{AutorunArgs, StatusArgs};
-use crate::exit::Exit;
-use crate::interrupt::Interrupt;
-use crate::output::{Output, say};
 use crate::settings::controller::{Controller, Finished};
+use crate::{Exit, Interrupt, Output, say};
 
 /// More than reading takes at the slowest rates.
 const LIMIT: Duration = Duration::from_secs(30);
@@ -26,7 +24,7 @@ const UNKNOWN: &str =
 pub fn autorun(args: &AutorunArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let controller = Controller::connect(&args.connect, interrupt)?;
     let wanted = args.delay;
-    let (subject, mut keeper) = (controller.subject(), controller.keeper());
+    let (subject, mut keeper) = (controller.subject, controller.keeper());
     let finished = controller.run(AUTORUN_JOB, SETTING_LIMIT, move |wire| {
         if let Some(delay) = wanted {
             begin_command(wire, subject, false, &mut *keeper)?;
@@ -70,7 +68,7 @@ pub fn status(args: &StatusArgs, out: &mut Output, interrupt: &Interrupt) -> Res
 
 /// What a controller that is simulated in this program knows of itself.
 fn view_of(controller: &Controller<'_>) -> Option<ScriptView> {
-    let simulation = controller.simulation()?;
+    let simulation = controller.client.simulation()?;
     let unit = simulation.unit_of(controller.identity().address)?;
     simulation.views().get(unit)?.script.clone()
 }

@@ -8,14 +8,12 @@ use egui::Rect;
 
 use super::{Asked, Export, LEAST_PICTURE, OpenAs, Recording, Said, size_text};
 use crate::files::FileAnswer;
-use crate::graph::live::{LiveGraph, Opened};
-use crate::graph::load;
-use crate::graph::marks::Mark;
+use crate::graph::live::Opened;
 use crate::graph::picture::draw::Scene;
 use crate::graph::picture::frame::Frame;
 use crate::graph::picture::{legend, png, svg};
 use crate::graph::runs::Run;
-use crate::graph::sheet::Sheet;
+use crate::graph::{LiveGraph, Mark, Sheet, load};
 use crate::model::message::Gravity;
 use crate::theme::Palette;
 use brushwork_core::recording::recorder::Recorder;
@@ -154,10 +152,6 @@ impl LiveGraph {
                 format!("Could not record: {error}. Close other programs and try again."),
             ),
         }
-    }
-
-    pub fn stop_recording(&mut self) {
-        self.end_recording("");
     }
 
     /// The link is gone: so is what could be recorded.

@@ -5,13 +5,10 @@ use egui::{Align2, Color32, Pos2, Rect, Vec2, pos2, vec2};
 use super::axes::{self, Zero};
 use super::frame::{FLAGS, Frame, GUTTER};
 use super::{Element, Layer, Picture, line_of};
-use crate::graph::cursors::Cursors;
-use crate::graph::marks::{Mark, MarkKind};
 use crate::graph::runs::{Align, Run};
 use crate::graph::scale::DIVISIONS;
-use crate::graph::sheet::Sheet;
 use crate::graph::trace::{Columns, Trace, View};
-use crate::graph::trigger::{TriggerMode, TriggerSource};
+use crate::graph::{Cursors, Mark, MarkKind, Sheet, TriggerMode, TriggerSource};
 use crate::theme::Palette;
 
 /// Room for one figure of the vertical axis.

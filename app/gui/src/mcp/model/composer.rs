@@ -23,7 +23,7 @@ pub struct Composer {
     pub arguments: Vec<String>,
     sent: u64,
     waiting: Option<(u64, Request, Generation)>,
-    answer: Option<Result<String, String>>,
+    pub answer: Option<Result<String, String>>,
 }
 
 /// A command that is complete.
@@ -98,11 +98,6 @@ impl Composer {
     /// Whether the answer has not come yet.
     pub fn is_waiting(&self) -> bool {
         self.waiting.is_some()
-    }
-
-    /// What came back last.
-    pub fn answer(&self) -> Option<&Result<String, String>> {
-        self.answer.as_ref()
     }
 
     pub fn answered(&mut self, id: u64, result: &Result<Values, Failure>) {

@@ -4,11 +4,10 @@ use brushwork_link::FamilyRef;
 use brushwork_link::device::{ArmScope, Channel, Drive, Identity, Job, PinSignal, StatusReport};
 use brushwork_link::settings::{Group, Row, SettingValue, SettingsImage, SettingsTable, Subject};
 use brushwork_mcp_client::channels::CHANNELS;
-use brushwork_mcp_client::diagnosis;
 use brushwork_mcp_client::indicators::{conditions, indicators};
 use brushwork_mcp_client::script::MIN_AUTORUN;
 use brushwork_mcp_client::settings::{PinMode, function_text, open_range};
-use brushwork_mcp_client::{MCP, is_mcp, layout_of, model_of, packet_generation, subject};
+use brushwork_mcp_client::{MCP, diagnosis, is_mcp, layout_of, model_of, packet_generation, subject};
 use brushwork_mcp_wire::codes::ENCODER_PIN_NONE;
 use brushwork_mcp_wire::models::{self, MODELS};
 use brushwork_mcp_wire::packet_serial::status::{Condition, Conditions, StatusIndicator};
@@ -19,10 +18,7 @@ use brushwork_values::Motor;
 use super::diagnosis::ends;
 use super::{McpConnection, script};
 use crate::family::{Ability, ActiveIndicator, Family, Figure, Figures, Known, Own, Sliders};
-use crate::model::drawer::Tab;
-use crate::model::help_page::HelpPage;
-use crate::model::indicator::{IndicatorInfo, IndicatorState, state_of};
-use crate::model::screen::Screen;
+use crate::model::{HelpPage, IndicatorInfo, IndicatorState, Screen, Tab, state_of};
 use crate::tune::Loop;
 
 #[derive(Debug)]
@@ -301,47 +297,36 @@ const fn m2(channel: Channel, label: &'static str, unit: &'static str) -> Figure
 }
 
 const FIGURES: [Figures; 5] = [
-    Figures {
-        rows: &[m1(Channel::TEMPERATURE_1, "Temp 1", "°C"), m2(Channel::TEMPERATURE_2, "Temp 2", "°C")],
-        label_width: 40.0,
-        unit_letters: 2,
-        digits: 5,
-        zero: false,
-    },
-    Figures {
-        rows: &[m1(Channel::M1_CURRENT, "M1 amps", "A"), m2(Channel::M2_CURRENT, "M2 amps", "A")],
-        label_width: 51.0,
-        unit_letters: 1,
-        digits: 7,
-        zero: false,
-    },
-    Figures {
-        rows: &[m1(Channel::M1_POSITION, "M1 encoder", ""), m2(Channel::M2_POSITION, "M2 encoder", "")],
-        label_width: 68.0,
-        unit_letters: 0,
-        digits: 11,
-        zero: true,
-    },
-    Figures {
-        rows: &[
-            m1(Channel::M1_VELOCITY, "M1 speed", "counts/s"),
-            m2(Channel::M2_VELOCITY, "M2 speed", "counts/s"),
-        ],
-        label_width: 54.0,
-        unit_letters: 5,
-        digits: 8,
-        zero: false,
-    },
-    Figures {
-        rows: &[
-            m1(Channel::MAIN_BATTERY, "Main battery", "V"),
-            m2(Channel::LOGIC_BATTERY, "Logic battery", "V"),
-        ],
-        label_width: 74.0,
-        unit_letters: 1,
-        digits: 5,
-        zero: false,
-    },
+    Figures::new(
+        &[m1(Channel::TEMPERATURE_1, "Temp 1", "°C"), m2(Channel::TEMPERATURE_2, "Temp 2", "°C")],
+        40.0,
+        (2, 5),
+        false,
+    ),
+    Figures::new(
+        &[m1(Channel::M1_CURRENT, "M1 amps", "A"), m2(Channel::M2_CURRENT, "M2 amps", "A")],
+        51.0,
+        (1, 7),
+        false,
+    ),
+    Figures::new(
+        &[m1(Channel::M1_POSITION, "M1 encoder", ""), m2(Channel::M2_POSITION, "M2 encoder", "")],
+        68.0,
+        (0, 11),
+        true,
+    ),
+    Figures::new(
+        &[m1(Channel::M1_VELOCITY, "M1 speed", "counts/s"), m2(Channel::M2_VELOCITY, "M2 speed", "counts/s")],
+        54.0,
+        (5, 8),
+        false,
+    ),
+    Figures::new(
+        &[m1(Channel::MAIN_BATTERY, "Main battery", "V"), m2(Channel::LOGIC_BATTERY, "Logic battery", "V")],
+        74.0,
+        (1, 5),
+        false,
+    ),
 ];
 
 #[cfg(test)]

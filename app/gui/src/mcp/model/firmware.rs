@@ -10,8 +10,7 @@ use brushwork_link::settings::{Act, Profile, ReadReport, Subject, diff, read_all
 use brushwork_link::transport::Stream;
 use brushwork_mcp_client::firmware::{Progress, RESUME_NOTE, Sent, risks, suit};
 use brushwork_mcp_wire::loader::{Image, SimulatedImage};
-use brushwork_mcp_wire::models;
-use brushwork_mcp_wire::models::Model;
+use brushwork_mcp_wire::models::{self, Model};
 use crossbeam_channel::{Receiver, bounded};
 
 use crate::files::{FileAction, FileAnswer, FileDialog, FileKind};
@@ -123,11 +122,6 @@ impl Stage {
             Self::Sending { progress, .. } => *progress == Progress::Greeting,
             Self::Idle | Self::Entering { .. } | Self::Done(_) | Self::Failed(_) => false,
         }
-    }
-
-    /// Whether ending it would leave the controller without firmware.
-    pub fn must_go_on(&self) -> bool {
-        matches!(self, Self::Sending { .. }) && !self.can_be_cancelled()
     }
 
     /// What happens now, and the share that is done where it is known.

@@ -1,7 +1,6 @@
 //! What the window keeps of an MCP's own: the firmware update, the composer of raw commands, and what its settings mean.
 
-use brushwork_link::Failure;
-use brushwork_link::device::Event;
+use brushwork_link::{Event, Failure};
 
 pub mod composer;
 mod diagnosis;
@@ -13,7 +12,7 @@ mod script;
 use crate::family::Own;
 use crate::model::connection::Connection;
 use composer::Composer;
-use firmware::Firmware;
+use firmware::{Firmware, Stage};
 
 /// The state of an MCP's own panels.
 #[derive(Debug, Default)]
@@ -42,7 +41,8 @@ impl Own for McpConnection {
     }
 
     fn holds_window(&self) -> Option<&'static str> {
-        self.firmware.stage.must_go_on().then_some(
+        let stage = &self.firmware.stage;
+        (matches!(stage, Stage::Sending { .. }) && !stage.can_be_cancelled()).then_some(
             "The window stays open: a firmware update runs, and ending it now would leave the controller without firmware.",
         )
     }

@@ -19,13 +19,13 @@ impl UnitSettings {
 
     /// The modes of a pin, each with the reason where it cannot be chosen.
     pub fn pin_modes(&self, pin: usize) -> Vec<(PinMode, Option<&'static str>)> {
-        modes(self.table(), pin, self.is_simulated())
+        modes(self.table(), pin, self.is_simulated)
     }
 
     /// Chooses a pin's mode; everything else of the pin goes to its default.
     pub fn set_pin_mode(&mut self, pin: usize, mode: PinMode) {
         if self.pin_mode(pin) != Some(mode) {
-            self.set_all(&change_mode(self.table(), pin, mode, self.is_simulated()));
+            self.set_all(&change_mode(self.table(), pin, mode, self.is_simulated));
         }
     }
 

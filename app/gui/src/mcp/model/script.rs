@@ -1,6 +1,6 @@
 //! The download of a script into an MCP.
 
-use brushwork_link::device::Job;
+use brushwork_link::Job;
 use brushwork_mcp_client::script::{DOWNLOAD_JOB, Downloaded, ScriptImage, Verified, download};
 use std::time::Duration;
 

@@ -1,15 +1,14 @@
 //! The guide through the calibration of an input, in place of its settings.
 
-use crate::model::general::CalibrationStage;
+use crate::model::general::{CalibrationStage, GeneralView};
 use egui::{Button, ProgressBar, RichText, Role, Ui, WidgetInfo, vec2};
 
-use crate::model::general::GeneralView;
 use crate::model::indicator::IndicatorState;
 use crate::screens::general::sheet_parts::{indicator_ui, text_ui};
 use crate::widgets::readout::Readout;
 
 pub fn calibrate_ui(ui: &mut Ui, general: &mut GeneralView<'_>) {
-    let Some(run) = general.calibration() else { return };
+    let Some(run) = &general.calibration else { return };
     ui.label(RichText::new("Calibration").size(16.0).strong());
     let Some(calibration) = run.moving() else {
         let text = if run.is_closing() {
@@ -21,7 +20,7 @@ pub fn calibrate_ui(ui: &mut Ui, general: &mut GeneralView<'_>) {
         return;
     };
     text_ui(ui, "The input commands nothing and triggers no action until this has ended.");
-    let (step, text, button) = match calibration.stage() {
+    let (step, text, button) = match calibration.stage {
         CalibrationStage::Ends => (
             "Step 1 of 2",
             "Move the input slowly to one end, hold it there a moment, then to the other. Readings that jump are not \
@@ -34,7 +33,7 @@ pub fn calibrate_ui(ui: &mut Ui, general: &mut GeneralView<'_>) {
             "Take center",
         ),
     };
-    ui.label(RichText::new(step).strong());
+    ui.strong(step);
     text_ui(ui, text);
     let now = calibration.lasting().map(|reading| reading.to_string());
     let seen = calibration.seen();

@@ -6,13 +6,9 @@ use egui::{Button, Grid, Label, Layout, ProgressBar, RichText, Role, ScrollArea,
 
 use crate::command::{Command, Commands, GuidedAction};
 use crate::family::Family;
-use crate::model::general::GeneralView;
-use crate::model::indicator::IndicatorState;
-use crate::model::link::LinkView;
-use crate::model::message::Gravity;
+use crate::model::{GeneralView, Gravity, IndicatorState, LinkView};
 use crate::screens::drive::arm_ui;
 use crate::screens::general::sheet_parts::indicator_ui;
-use crate::theme::Palette;
 use crate::widgets::numeric::Numeric;
 use brushwork_core::motion::clamp::Step;
 
@@ -34,11 +30,11 @@ pub fn clamp_ui(
         ScrollArea::vertical().id_salt("clamp test").auto_shrink(false).show(ui, |ui| {
             ui.set_max_width(ui.available_width() - 12.0);
             ui.label(RichText::new("Voltage clamp test").size(16.0).strong());
-            ui.add(Label::new(RichText::new(WHAT_IT_DOES).color(Palette::of(ui).weak_text)).wrap());
+            ui.add(Label::new(RichText::new(WHAT_IT_DOES).weak()).wrap());
             outputs_ui(ui, general);
             arm_ui(ui, ArmScope::ClampTest, link, family, commands);
             ui.add_space(2.0);
-            ui.add_enabled_ui(!general.clamp.is_running(), |ui| task_ui(ui, general));
+            ui.add_enabled_ui(!general.clamp.job.is_running(), |ui| task_ui(ui, general));
             run_ui(ui, general, link, commands);
             if let Some(verdict) = &general.clamp.verdict {
                 let state = match verdict.gravity {
@@ -78,14 +74,7 @@ fn task_ui(ui: &mut Ui, general: &mut GeneralView<'_>) {
         ui.separator();
         let mut volts = limit;
         ui.label("Limit");
-        let field = Numeric {
-            name: "Clamp test limit",
-            unit: "V",
-            range: 6.0..=90.0,
-            decimals: 1,
-            step: 0.5,
-            width: 70.0,
-        };
+        let field = Numeric::new("Clamp test limit", "V", 6.0..=90.0, (1, 0.5, 70.0));
         if field
             .ui(ui, &mut volts)
             .on_hover_text("The test stops where the main battery reaches it")
@@ -94,26 +83,12 @@ fn task_ui(ui: &mut Ui, general: &mut GeneralView<'_>) {
             test.limit_volts = Some(volts);
         }
         ui.label("Slow down");
-        let field = Numeric {
-            name: "Clamp test deceleration",
-            unit: "%/s",
-            range: 20.0..=2000.0,
-            decimals: 0,
-            step: 10.0,
-            width: 80.0,
-        };
+        let field = Numeric::new("Clamp test deceleration", "%/s", 20.0..=2000.0, (0, 10.0, 80.0));
         field.ui(ui, &mut test.down_percent_per_s).on_hover_text(
             "How fast the duty comes down. Much faster brakes the motor in itself and gives less back",
         );
         ui.label("Run for");
-        let field = Numeric {
-            name: "Clamp test hold",
-            unit: "s",
-            range: 0.2..=10.0,
-            decimals: 1,
-            step: 0.1,
-            width: 60.0,
-        };
+        let field = Numeric::new("Clamp test hold", "s", 0.2..=10.0, (1, 0.1, 60.0));
         field
             .ui(ui, &mut test.hold_s)
             .on_hover_text("How long the motor runs at each speed before it is slowed");
@@ -123,7 +98,7 @@ fn task_ui(ui: &mut Ui, general: &mut GeneralView<'_>) {
 fn run_ui(ui: &mut Ui, general: &GeneralView<'_>, link: &LinkView, commands: &mut Commands) {
     ui.horizontal(|ui| {
         ui.set_min_height(30.0);
-        if let Some((fraction, text)) = general.clamp.progress() {
+        if let Some((fraction, text)) = general.clamp.job.progress() {
             let cancel = ui.add(Button::new("Cancel").min_size(vec2(90.0, 28.0)));
             cancel.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Cancel clamp test"));
             if cancel.clicked() {
@@ -148,10 +123,9 @@ fn steps_ui(ui: &mut Ui, steps: &[Step]) {
     if steps.is_empty() {
         return;
     }
-    let weak = Palette::of(ui).weak_text;
     Grid::new("clamp steps").num_columns(5).spacing([28.0, 3.0]).show(ui, |ui| {
         for title in ["From", "Running", "Highest", "Rise", "Over-voltage"] {
-            ui.label(RichText::new(title).color(weak));
+            ui.weak(title);
         }
         ui.end_row();
         for step in steps {

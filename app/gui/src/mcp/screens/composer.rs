@@ -3,17 +3,14 @@
 use brushwork_link::exchange::Permit;
 use brushwork_mcp_client::{packet_address, packet_generation};
 use brushwork_mcp_wire::packet_serial::{Address, Effect, Generation};
-use brushwork_values::Field;
-use brushwork_values::hex;
+use brushwork_values::{Field, hex};
 use egui::{Grid, Label, RichText, ScrollArea, TextEdit, Ui, vec2};
 
 use crate::command::{Command, Commands};
 use crate::mcp::model::composer::{Composer, Prepared};
-use crate::model::Model;
-use crate::model::connection::Connection;
-use crate::model::link::Arming;
+use crate::model::{Arming, Connection, Model};
 use crate::theme::Palette;
-use crate::widgets::text_field::text_field_ui;
+use crate::widgets::text_field_ui;
 
 const LIST_WIDTH: f32 = 250.0;
 
@@ -34,7 +31,7 @@ pub fn composer_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) -> O
                 match composer.prepare(address, generation, permit) {
                     Ok(prepared) => send_ui(ui, composer, generation, prepared, commands),
                     Err(why) => {
-                        ui.label(RichText::new(why).color(Palette::of(ui).weak_text));
+                        ui.weak(why);
                     }
                 }
                 answer_ui(ui, composer);
@@ -66,9 +63,7 @@ fn choice_ui(ui: &mut Ui, composer: &mut Composer, generation: Generation) {
     });
     let found: Vec<_> = composer.found(generation).collect();
     if found.is_empty() {
-        ui.label(
-            RichText::new("No command of this generation is called so.").color(Palette::of(ui).weak_text),
-        );
+        ui.weak("No command of this generation is called so.");
     }
     let chosen = composer.command().map(|row| row.number);
     let row_height = ui.spacing().interact_size.y;
@@ -90,7 +85,7 @@ fn choice_ui(ui: &mut Ui, composer: &mut Composer, generation: Generation) {
 fn arguments_ui(ui: &mut Ui, composer: &mut Composer, generation: Generation) {
     let fields = composer.fields(generation);
     if composer.command().is_some() && fields.is_empty() {
-        ui.label(RichText::new("No arguments.").color(Palette::of(ui).weak_text));
+        ui.weak("No arguments.");
     }
     composer.arguments.resize(fields.len(), String::new());
     Grid::new("arguments").num_columns(3).spacing([10.0, 3.0]).show(ui, |ui| {
@@ -150,7 +145,7 @@ const fn care(effect: Effect) -> Option<&'static str> {
 }
 
 fn answer_ui(ui: &mut Ui, composer: &Composer) {
-    match composer.answer() {
+    match &composer.answer {
         Some(Ok(answer)) => {
             ui.add(Label::new(format!("Answer: {answer}")).wrap());
         }

@@ -3,8 +3,7 @@
 use brushwork_link::settings::Row;
 use egui::{Button, Label, Layout, RichText, Role, ScrollArea, Ui, WidgetInfo, vec2};
 
-use crate::model::general::GeneralView;
-use crate::model::indicator::IndicatorState;
+use crate::model::{GeneralView, IndicatorState};
 use crate::screens::general::sheet_parts::text_ui;
 
 pub fn conflicts_ui(ui: &mut Ui, general: &mut GeneralView<'_>, height: f32) {
@@ -27,8 +26,7 @@ pub fn conflicts_ui(ui: &mut Ui, general: &mut GeneralView<'_>, height: f32) {
             for conflict in &conflicts {
                 let title = conflict.keys.first().and_then(|key| unit.table().row(key)).map(Row::title);
                 ui.horizontal_top(|ui| {
-                    let (rect, _) = ui.allocate_exact_size(vec2(18.0, 18.0), egui::Sense::hover());
-                    IndicatorState::Warning.paint(ui, rect.center(), 6.0);
+                    IndicatorState::Warning.ui(ui, vec2(18.0, 18.0), 6.0);
                     let text_width = (ui.available_width() - 90.0).max(120.0);
                     ui.allocate_ui(vec2(text_width, 0.0), |ui| {
                         ui.set_width(text_width);

@@ -2,8 +2,7 @@
 
 use brushwork_link::device::Identity;
 use brushwork_mcp_client::layout_of;
-use brushwork_mcp_wire::models;
-use brushwork_mcp_wire::models::MODELS;
+use brushwork_mcp_wire::models::{self, MODELS};
 use brushwork_mcp_wire::packet_serial::known::{generation_text, quirks};
 use egui::{
     Align, Button, ComboBox, Context, Grid, Layout, ProgressBar, Rect, RichText, ScrollArea, Ui, Window, vec2,
@@ -11,11 +10,10 @@ use egui::{
 
 use crate::command::{Command, Commands};
 use crate::mcp::model::firmware::{Firmware, FirmwareAction, LISTED, Stage};
-use crate::model::Model;
-use crate::model::general::Sheet;
+use crate::model::{Model, Sheet};
 use crate::theme::Palette;
-use crate::widgets::heading::heading_ui;
-use crate::widgets::text_field::text_field_ui;
+use crate::widgets::{choice_ui, heading_ui, text_field_ui};
+use brushwork_core::words::capital;
 
 /// Draws the window, if it is open, within `room`.
 pub fn firmware_ui(ctx: &Context, model: &mut Model, commands: &mut Commands, room: Rect) {
@@ -42,10 +40,9 @@ fn contents_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let identity = model.front.link.identity().cloned();
     match &identity {
         Some(identity) => installed_ui(ui, identity),
-        None => weak_ui(
-            ui,
+        None => drop(ui.weak(
             "No controller is connected. Connect one to see its firmware, or resume an update that broke.",
-        ),
+        )),
     }
     ui.add_space(8.0);
     heading_ui(ui, "Update from a file");
@@ -77,7 +74,7 @@ fn contents_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 /// What is installed, and the table of what is known about it.
 fn installed_ui(ui: &mut Ui, identity: &Identity) {
     heading_ui(ui, "Installed");
-    ui.label(RichText::new(identity.version_text.trim()).strong());
+    ui.strong(identity.version_text.trim());
     ui.label(format!(
         "{}. {}",
         capital(&identity.generation.to_string()),
@@ -88,7 +85,7 @@ fn installed_ui(ui: &mut Ui, identity: &Identity) {
     let family = models::identify(&identity.version_text).map(|model| model.family);
     Grid::new("known firmware").num_columns(2).striped(true).spacing(vec2(12.0, 4.0)).show(ui, |ui| {
         for quirk in quirks(family, layout_of(identity.generation), &identity.firmware) {
-            ui.label(RichText::new(quirk.topic).strong());
+            ui.strong(quirk.topic);
             let text = ui.add(egui::Label::new(quirk.text).wrap());
             text.on_hover_text(format!("From: {}", quirk.source));
             ui.end_row();
@@ -103,7 +100,7 @@ fn ask_ui(
     simulated: bool,
     commands: &mut Commands,
 ) {
-    weak_ui(ui, "No firmware image is published. An update needs a file that you have.");
+    ui.weak("No firmware image is published. An update needs a file that you have.");
     ui.horizontal(|ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if ui.button("Choose…").clicked() {
@@ -140,7 +137,7 @@ fn ask_ui(
     }
     if let Some(why) = why_not {
         button.on_disabled_hover_text(why);
-        weak_ui(ui, why);
+        ui.weak(why);
     }
 }
 
@@ -148,20 +145,16 @@ fn ask_ui(
 fn resumed_ui(ui: &mut Ui, firmware: &mut Firmware) {
     ui.horizontal(|ui| {
         ui.label("Waits in its loader:");
-        let chosen = firmware.resumed_model.map_or("none", |model| model.name);
-        let combo = ComboBox::from_id_salt("resumed model").selected_text(chosen).show_ui(ui, |ui| {
-            ui.selectable_value(&mut firmware.resumed_model, None, "none");
-            for model in MODELS {
-                ui.selectable_value(&mut firmware.resumed_model, Some(model), model.name);
-            }
-        });
-        ui.ctx().accesskit_node_builder(combo.response.id, |node| node.set_label("Model in its loader"));
+        let list = ComboBox::from_id_salt("resumed model");
+        let models = std::iter::once(None).chain(MODELS.iter().map(Some));
+        let named = |model: Option<&models::Model>| model.map_or("none", |model| model.name);
+        choice_ui(ui, list, "Model in its loader", &mut firmware.resumed_model, models, named);
     });
 }
 
 fn running_ui(ui: &mut Ui, stage: &Stage, commands: &mut Commands) {
     let (text, share) = stage.reported();
-    ui.label(RichText::new(&text).strong());
+    ui.strong(&text);
     let bar = ProgressBar::new(share.unwrap_or(0.0)).desired_height(18.0);
     ui.add(if share.is_some() { bar.show_percentage() } else { bar });
     let harmless = stage.can_be_cancelled();
@@ -170,24 +163,23 @@ fn running_ui(ui: &mut Ui, stage: &Stage, commands: &mut Commands) {
         commands.push(Command::own(FirmwareAction::Cancel));
     }
     if !harmless {
-        weak_ui(ui, "It cannot be cancelled now: the controller would be left without firmware.");
+        ui.weak("It cannot be cancelled now: the controller would be left without firmware.");
     }
 }
 
 fn done_ui(ui: &mut Ui, text: &str, firmware: &Firmware, connected: bool, commands: &mut Commands) {
-    ui.label(RichText::new(text).strong());
+    ui.strong(text);
     if let Some(backup) = firmware.backup() {
-        weak_ui(ui, &format!("The settings from before are kept: {backup}."));
+        ui.weak(format!("The settings from before are kept: {backup}."));
     }
     match firmware.compared() {
-        None if connected => weak_ui(ui, "Comparing the settings with the backup."),
-        None => weak_ui(
-            ui,
+        None if connected => drop(ui.weak("Comparing the settings with the backup.")),
+        None => drop(ui.weak(
             "The controller restarts. Connect it again; its settings are then compared with the backup.",
-        ),
+        )),
         Some(compared) => {
             if let Some(why) = &compared.failure {
-                weak_ui(ui, why);
+                ui.weak(why);
             } else if compared.differences.is_empty() {
                 ui.label("The settings are as they are in the backup.");
             } else {
@@ -208,19 +200,9 @@ fn differences_ui(ui: &mut Ui, differences: &[String], commands: &mut Commands) 
         ui.label(line);
     }
     if count > LISTED {
-        weak_ui(ui, &format!("and {} more", count - LISTED));
+        ui.weak(format!("and {} more", count - LISTED));
     }
     if ui.button("Restore from the backup…").clicked() {
         commands.push(Command::OpenSheet(Sheet::Backups));
     }
-}
-
-fn weak_ui(ui: &mut Ui, text: &str) {
-    let color = Palette::of(ui).weak_text;
-    ui.label(RichText::new(text).color(color));
-}
-
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }

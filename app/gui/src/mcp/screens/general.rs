@@ -6,10 +6,7 @@ use egui::{Ui, vec2};
 
 use super::{clamp, conflicts, pin};
 use crate::command::Commands;
-use crate::model::Model;
-use crate::model::general::{GeneralView, Section};
-use crate::model::indicator::IndicatorState;
-use crate::model::settings::UnitSettings;
+use crate::model::{GeneralView, IndicatorState, Model, Section, UnitSettings};
 use crate::screens::general::rows::{HEIGHT, MARK_WIDTH};
 use crate::screens::general::sheet_parts::indicator_ui;
 use crate::screens::general::{framed_ui, sections_ui};

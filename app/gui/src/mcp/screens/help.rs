@@ -4,12 +4,11 @@ use std::sync::OnceLock;
 
 use brushwork_mcp_client::settings::{ReferenceForm, ReferenceRow, reference};
 use brushwork_mcp_wire::packet_serial::{COMMANDS, reference as protocol};
-use egui::{Grid, Label, RichText, Ui};
+use egui::{Grid, Label, Ui};
 
 use crate::help::list::{Entry, list_ui};
-use crate::help::{note_ui, scrolled_ui};
+use crate::help::scrolled_ui;
 use crate::model::help::Help;
-use crate::theme::Palette;
 
 pub fn settings_ui(ui: &mut Ui, help: &mut Help) {
     static ROWS: OnceLock<Vec<ReferenceRow>> = OnceLock::new();
@@ -23,13 +22,12 @@ pub fn settings_ui(ui: &mut Ui, help: &mut Help) {
     let entries = ENTRIES.get_or_init(|| rows.iter().map(entry).collect());
     list_ui(ui, entries, help);
     let chosen = rows.iter().find(|row| Some(row.key) == help.entry.as_deref());
-    scrolled_ui(ui, |ui| match chosen {
+    scrolled_ui(ui, |ui| {
+        match chosen {
         Some(row) => setting_ui(ui, row),
-        None => note_ui(
-            ui,
-            "Choose a setting at the left. A pair of braces in a key stands for the number or name of a motor, pin, \
-             stream or output.",
-        ),
+        None => drop(ui.weak("Choose a setting at the left. A pair of braces in a key stands for the number or name of a motor, pin, \
+             stream or output.")),
+    }
     });
 }
 
@@ -71,10 +69,9 @@ fn form_text(form: &ReferenceForm) -> String {
 }
 
 fn table_ui(ui: &mut Ui, lines: &[(&str, String)]) {
-    let weak = Palette::of(ui).weak_text;
     Grid::new("setting").num_columns(2).spacing([14.0, 4.0]).show(ui, |ui| {
         for (label, text) in lines {
-            ui.label(RichText::new(*label).color(weak));
+            ui.weak(*label);
             ui.add(Label::new(text).wrap());
             ui.end_row();
         }
@@ -118,7 +115,7 @@ fn status_ui(ui: &mut Ui) {
     ui.label("Masks of each condition in the four firmware generations; a dash where a generation has no such bit.");
     Grid::new("status word").num_columns(7).striped(true).spacing([14.0, 3.0]).show(ui, |ui| {
         for head in ["Condition", "Indicator", "Gravity", "1", "2", "3", "4"] {
-            ui.label(RichText::new(head).strong());
+            ui.strong(head);
         }
         ui.end_row();
         for row in rows {
@@ -127,7 +124,7 @@ fn status_ui(ui: &mut Ui) {
             ui.label(format!("{:?}", row.severity).to_lowercase());
             for mask in row.masks {
                 let text = if mask == 0 { "–".to_owned() } else { format!("0x{mask:X}") };
-                ui.label(RichText::new(text).monospace());
+                ui.monospace(text);
             }
             ui.end_row();
         }

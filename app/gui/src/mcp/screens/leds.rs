@@ -47,7 +47,7 @@ pub fn leds_ui(ui: &mut Ui, connection: &Connection) {
         Some(_) => "As the simulated controller lights them.",
         None => "Derived from the status word and the PWM outputs: the controller does not tell its LEDs.",
     };
-    ui.label(RichText::new(source).small().color(Palette::of(ui).weak_text));
+    ui.label(RichText::new(source).small().weak());
     let next = lights.into_iter().filter_map(|(_, light)| light.changes_in(now)).min();
     if let Some(next) = next {
         ui.ctx().request_repaint_after(if real.is_some() { LOOK_INTERVAL } else { next });

@@ -8,12 +8,7 @@ use crate::actions::{Action, Keys, page};
 use crate::command::Commands;
 use crate::family_action::Host;
 use crate::help::mcl::mcl_ui;
-use crate::model::connection::Connection;
-use crate::model::general::GeneralView;
-use crate::model::help::Help;
-use crate::model::help_page::HelpPage;
-use crate::model::screen::Screen;
-use crate::model::{ConnectionId, Model};
+use crate::model::{Connection, ConnectionId, GeneralView, Help, HelpPage, Model, Screen};
 use crate::screens::face::Face;
 
 mod calibrate;
@@ -78,25 +73,7 @@ impl Face for Mcp {
 }
 
 const ACTIONS: &[Action] = &[
-    page!(
-        "help.settings",
-        HELP_SETTINGS.title,
-        Keys::None,
-        HELP_SETTINGS,
-        "Every setting: unit, range, default, and how it is read and written."
-    ),
-    page!(
-        "help.packet-serial",
-        HELP_COMMANDS.title,
-        Keys::None,
-        HELP_COMMANDS,
-        "Every command of the protocol, byte by byte, and the bits of the status word."
-    ),
-    page!(
-        "help.mcl",
-        HELP_MCL.title,
-        Keys::None,
-        HELP_MCL,
-        "Every command, operator, modifier, type and register of the MCL language, and where the manual contradicts itself."
-    ),
+    page!("help.settings": HELP_SETTINGS.title, Keys::None, HELP_SETTINGS, "Every setting: unit, range, default, and how it is read and written."),
+    page!("help.packet-serial": HELP_COMMANDS.title, Keys::None, HELP_COMMANDS, "Every command of the protocol, byte by byte, and the bits of the status word."),
+    page!("help.mcl": HELP_MCL.title, Keys::None, HELP_MCL, "Every command, operator, modifier, type and register of the MCL language, and where the manual contradicts itself."),
 ];

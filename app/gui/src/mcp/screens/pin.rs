@@ -14,10 +14,8 @@ use egui::{
 use super::calibrate::calibrate_ui;
 use super::signal_graph::signal_graph_ui;
 use crate::command::{Command, Commands};
-use crate::model::general::GeneralView;
-use crate::model::settings::UnitSettings;
+use crate::model::{GeneralView, UnitSettings};
 use crate::screens::general::rows::{self, Columns};
-use crate::theme::Palette;
 use crate::widgets::readout::Readout;
 
 /// Room that the scroll bar may take.
@@ -45,7 +43,7 @@ pub fn pin_ui(
         head_ui(ui, general, pin, commands);
         let scroll = ScrollArea::vertical().id_salt(("pin", pin)).auto_shrink(false);
         scroll.show(ui, |ui| {
-            if general.calibration().is_some_and(|run| run.pin() == pin) {
+            if general.calibration.as_ref().is_some_and(|run| run.pin == pin) {
                 // The graph of the open range says nothing.
                 return calibrate_ui(ui, general);
             }
@@ -85,9 +83,9 @@ fn head_ui(ui: &mut Ui, general: &mut GeneralView<'_>, pin: usize, commands: &mu
         ui.set_min_height(ui.spacing().interact_size.y);
         let Some(unit) = general.unit_mut() else { return };
         let name = unit.table().subject().pin_name(pin - 1);
-        ui.label(RichText::new(&name).strong());
+        ui.strong(&name);
         ui.add_space(8.0);
-        ui.label(RichText::new("Mode").color(Palette::of(ui).weak_text));
+        ui.weak("Mode");
         mode_ui(ui, unit, pin, &name);
         let mode = unit.pin_mode_on_controller(pin);
         let is_edited = unit.pin_mode(pin) != mode;
@@ -108,7 +106,7 @@ fn head_ui(ui: &mut Ui, general: &mut GeneralView<'_>, pin: usize, commands: &mu
         }
         if is_edited {
             let hint = "Write the mode to see the live signal.";
-            ui.add(Label::new(RichText::new(hint).small().color(Palette::of(ui).weak_text)).truncate());
+            ui.add(Label::new(RichText::new(hint).small().weak()).truncate());
         }
     });
     if let Some(action) = action.and_then(|pin| general.calibrate(pin)) {
@@ -138,15 +136,14 @@ fn mode_ui(ui: &mut Ui, unit: &mut UnitSettings, pin: usize, name: &str) {
 }
 
 fn picture_ui(ui: &mut Ui, general: &mut GeneralView<'_>, pin: usize, signal: Option<PinSignal>, width: f32) {
-    let idle = general.calibration().is_none();
+    let idle = general.calibration.is_none();
     let Some(unit) = general.unit_mut() else { return };
     if matches!(unit.pin_mode(pin), None | Some(PinMode::None)) {
         let hint = "This pin measures nothing. Choose a mode to see its signal graph.";
         // As high as the graph, so that nothing moves when a mode is chosen.
         let (rect, _) = ui.allocate_exact_size(vec2(width, GRAPH_HEIGHT), Sense::hover());
         let place = UiBuilder::new().max_rect(rect.shrink(20.0)).layout(Layout::top_down(Align::Min));
-        let color = Palette::of(ui).weak_text;
-        ui.new_child(place).add(Label::new(RichText::new(hint).color(color)).wrap());
+        ui.new_child(place).add(Label::new(RichText::new(hint).weak()).wrap());
         return;
     }
     ui.add_enabled_ui(idle, |ui| signal_graph_ui(ui, unit, pin, signal, vec2(width, GRAPH_HEIGHT)));
@@ -160,7 +157,7 @@ fn status_ui(ui: &mut Ui, general: &GeneralView<'_>, pin: usize, signal: Option<
     let unit_name = mode.map_or("", PinMode::unit);
     let per_s = if unit_name.is_empty() { "/s".to_owned() } else { format!("{unit_name}/s") };
     let behind =
-        signal.and_then(|signal| unit.reading(pin, signal)).filter(|_| general.calibration().is_none());
+        signal.and_then(|signal| unit.reading(pin, signal)).filter(|_| general.calibration.is_none());
     let percent = |raw: i32| format!("{:.1}", f64::from(raw) / scale::FULL_DUTY_RAW as f64 * 100.0);
     let lines = [
         ("Input", behind.map(reading_text), unit_name),

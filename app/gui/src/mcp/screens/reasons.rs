@@ -1,11 +1,10 @@
 //! The one sentence that says why the motors do not run and what to do, and the reasons behind it.
 
 use brushwork_mcp_client::diagnosis::{Finding, Hindrance, diagnose};
-use egui::{Frame, Label, Margin, RichText, Role, Sense, Stroke, Ui, WidgetInfo, vec2};
+use egui::{Frame, Label, Margin, RichText, Role, Stroke, Ui, WidgetInfo, vec2};
 
 use crate::command::{Command, Commands};
-use crate::model::connection::Connection;
-use crate::model::indicator::IndicatorState;
+use crate::model::{Connection, IndicatorState};
 use crate::theme::Palette;
 
 pub fn reasons_ui(ui: &mut Ui, connection: &Connection, commands: &mut Commands) {
@@ -44,8 +43,7 @@ pub fn reasons_ui(ui: &mut Ui, connection: &Connection, commands: &mut Commands)
 
 fn row_ui(ui: &mut Ui, state: IndicatorState, text: RichText, name: &str) {
     ui.horizontal(|ui| {
-        let (rect, _) = ui.allocate_exact_size(vec2(20.0, 18.0), Sense::hover());
-        state.paint(ui, rect.center(), 6.0);
+        state.ui(ui, vec2(20.0, 18.0), 6.0);
         let spoken = format!("{name}: {}", text.text());
         let response = ui.add(Label::new(text).wrap());
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));

@@ -16,7 +16,7 @@ mod acts;
 pub struct Run {
     pub(super) unit: UnitKey,
     family: &'static dyn Family,
-    pub(super) pin: usize,
+    pub pin: usize,
     phase: Phase,
     /// Why the last step was not taken, for the user.
     pub reported: Option<String>,
@@ -36,10 +36,6 @@ enum Phase {
 }
 
 impl Run {
-    pub fn pin(&self) -> usize {
-        self.pin
-    }
-
     /// The calibration, while readings come.
     pub fn moving(&self) -> Option<&Calibration> {
         match &self.phase {
@@ -54,12 +50,8 @@ impl Run {
     }
 
     /// What to write for an action of a calibration.
-    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub(super) fn image(&self, action: SettingsAction) -> SettingsImage {
-        match action {
-            SettingsAction::CloseInput => self.before.clone(),
-            _ => self.opened(),
-        }
+        if action == SettingsAction::CloseInput { self.before.clone() } else { self.opened() }
     }
 
     /// What keeps the journal of the whole calibration; `make` makes one at its beginning.

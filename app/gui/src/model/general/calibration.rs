@@ -3,18 +3,19 @@
 use std::collections::VecDeque;
 
 /// What calibration is at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CalibrationStage {
     /// The input is to be moved to both ends.
+    #[default]
     Ends,
     /// The input is to be left at rest.
     Center,
 }
 
 /// A calibration under way. It takes bare readings one by one, however they come.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Calibration {
-    stage: CalibrationStage,
+    pub stage: CalibrationStage,
     recent: VecDeque<f64>,
     lowest: Option<f64>,
     highest: Option<f64>,
@@ -45,24 +46,7 @@ const REST_SPREAD: f64 = 0.04;
 /// The share of the way that the center keeps from either end.
 const END_MARGIN: f64 = 0.05;
 
-impl Default for Calibration {
-    fn default() -> Self {
-        Self {
-            stage: CalibrationStage::Ends,
-            recent: VecDeque::with_capacity(REST_READINGS),
-            lowest: None,
-            highest: None,
-            ends: None,
-        }
-    }
-}
-
 impl Calibration {
-    /// What it is at.
-    pub fn stage(&self) -> CalibrationStage {
-        self.stage
-    }
-
     /// Takes one bare reading.
     pub fn read(&mut self, reading: f64) {
         if self.recent.len() == REST_READINGS {
@@ -158,7 +142,7 @@ mod tests {
     #[test]
     fn both_ends_and_the_center_are_found() {
         let mut calibration = with_ends();
-        assert_eq!(calibration.stage(), CalibrationStage::Center);
+        assert_eq!(calibration.stage, CalibrationStage::Center);
         hold(&mut calibration, 1510.0, 10);
         let found = calibration.take_center().unwrap();
         assert_eq!(found, Calibrated { min: 1100.0, center: 1510.0, max: 1900.0, noise: 0.0 });
@@ -195,7 +179,7 @@ mod tests {
         hold(&mut calibration, 2000.0, 9);
         calibration.read(2020.0);
         assert!(calibration.take_ends().unwrap_err().contains("moved over 0 only"));
-        assert_eq!(calibration.stage(), CalibrationStage::Ends);
+        assert_eq!(calibration.stage, CalibrationStage::Ends);
     }
 
     #[test]

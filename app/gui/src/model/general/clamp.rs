@@ -1,14 +1,10 @@
 //! The voltage clamp test on the settings screen: what is set, what runs, what was found.
 
-use brushwork_link::device::{Event, JobEnding};
-use brushwork_link::settings::SettingValue;
+use brushwork_link::{Event, JobEnding, SettingValue};
 use brushwork_values::Motor;
 use crossbeam_channel::Receiver;
 
-use crate::model::link::Effect;
-use crate::model::message::Gravity;
-use crate::model::settings::UnitSettings;
-use crate::model::watched::Watched;
+use crate::model::{Effect, Gravity, UnitSettings, Watched};
 use brushwork_core::motion::clamp::{STEPS, Step, Task};
 
 mod acts;
@@ -24,7 +20,7 @@ pub struct ClampTest {
     pub limit_volts: Option<f64>,
     pub down_percent_per_s: f64,
     pub hold_s: f64,
-    job: Watched<()>,
+    pub job: Watched<()>,
     running: Option<Running>,
     /// What was found in the last run.
     pub steps: Vec<Step>,
@@ -61,24 +57,12 @@ impl Default for ClampTest {
 }
 
 impl ClampTest {
-    pub fn is_running(&self) -> bool {
-        self.job.is_running()
-    }
-
-    pub fn progress(&self) -> Option<(f32, &str)> {
-        self.job.progress()
-    }
-
-    pub fn cancel(&self) {
-        self.job.cancel();
-    }
-
     /// The limit of the test: as set, or from the unit's own maximum.
     pub fn limit(&self, unit: Option<&UnitSettings>) -> f64 {
         self.limit_volts.or_else(|| unit.and_then(first_limit)).unwrap_or(30.0)
     }
 
-    fn take(&mut self, event: Event) -> Vec<Effect> {
+    pub fn take(&mut self, event: Event) -> Vec<Effect> {
         let Some(running) = &self.running else { return Vec::new() };
         self.steps.extend(running.found.try_iter());
         let task = running.task;
@@ -89,7 +73,7 @@ impl ClampTest {
         vec![Effect::Say(verdict.gravity, verdict.sentence)]
     }
 
-    fn forget_job(&mut self) {
+    pub fn forget_job(&mut self) {
         self.job.forget();
         self.running = None;
     }

@@ -2,9 +2,8 @@
 
 use brushwork_link::settings::Row;
 
-use super::General;
 use super::section::Section;
-use crate::model::settings::UnitSettings;
+use crate::model::{General, UnitSettings};
 
 impl General {
     /// Whether rows are picked from all sections.

@@ -17,11 +17,11 @@ pub struct Profiles {
     /// Whether a saved profile has the edits that are not written instead of what the controller has.
     pub with_edits: bool,
     dialog: Option<(FileDialog, Purpose)>,
-    opened: Option<Opened>,
+    pub opened: Option<Opened>,
     /// A profile that has to be changed before it fits, until that is agreed to.
     pending: Option<(Opened, Vec<String>)>,
     /// What came of the last attempt.
-    reported: Reported,
+    pub reported: Reported,
 }
 
 /// What a path is asked for.
@@ -54,17 +54,9 @@ pub struct Opened {
 }
 
 impl Profiles {
-    pub fn opened(&self) -> Option<&Opened> {
-        self.opened.as_ref()
-    }
-
     /// What would be changed of the profile that was read, a sentence each, and its name.
     pub fn pending(&self) -> Option<(&str, &[String])> {
         self.pending.as_ref().map(|(opened, changes)| (opened.name.as_str(), changes.as_slice()))
-    }
-
-    pub fn reported(&self) -> &Reported {
-        &self.reported
     }
 
     pub fn forget_reported(&mut self) {

@@ -17,17 +17,17 @@ pub struct General {
     /// The row that is explained below the list, by its key.
     pub explained: Option<String>,
     pub profiles: Profiles,
-    pub(super) calibration: Option<calibrate::Run>,
+    pub calibration: Option<calibrate::Run>,
     pub clamp: ClampTest,
     /// The row that is to be scrolled into view.
-    pub(super) sought: Option<String>,
+    pub sought: Option<String>,
     /// Which two copies are set side by side.
     pub comparing: Comparing,
     /// Which motor is copied to the other, 1 or 2.
     pub copied_motor: usize,
-    pub(super) sheet: Option<Sheet>,
-    pub(super) sheet_is_new: bool,
-    pub(super) wants_search: bool,
+    pub sheet: Option<Sheet>,
+    pub sheet_is_new: bool,
+    pub wants_search: bool,
     /// Opened as soon as the settings were read.
     pub(super) waiting_sheet: Option<Sheet>,
 }
@@ -40,20 +40,6 @@ impl General {
         self.sheet = None;
     }
 
-    pub fn sheet(&self) -> Option<&Sheet> {
-        self.sheet.as_ref()
-    }
-
-    /// Whether a row is to be scrolled into view.
-    pub fn is_seeking(&self) -> bool {
-        self.sought.is_some()
-    }
-
-    /// The row that is to be scrolled into view, once.
-    pub fn take_sought(&mut self) -> Option<String> {
-        self.sought.take()
-    }
-
     pub fn close_sheet(&mut self) {
         self.sheet = None;
     }
@@ -62,15 +48,5 @@ impl General {
     pub fn find(&mut self) {
         self.close_sheet();
         self.wants_search = true;
-    }
-
-    /// True once for each [`General::find`].
-    pub fn take_search_focus(&mut self) -> bool {
-        std::mem::take(&mut self.wants_search)
-    }
-
-    /// True once for each sheet: then the keyboard goes to its button.
-    pub fn take_sheet_focus(&mut self) -> bool {
-        std::mem::take(&mut self.sheet_is_new)
     }
 }

@@ -3,9 +3,8 @@
 use brushwork_core::settings::remedy;
 use brushwork_link::settings::Act;
 
-use super::Sheet;
 use super::view::GeneralView;
-use crate::model::settings::Settle;
+use crate::model::{Settle, Sheet};
 
 impl GeneralView<'_> {
     /// Settles what was cut short. The newest alone is finished or undone; those before were overtaken by it.
@@ -17,7 +16,7 @@ impl GeneralView<'_> {
         }
         let Some(unit) = self.settings.unit_mut() else { return };
         let Some(ram) = unit.ram() else { return };
-        let remedy = remedy(&newest, unit.table(), ram, how == Settle::Undo, unit.is_simulated());
+        let remedy = remedy(&newest, unit.table(), ram, how == Settle::Undo, unit.is_simulated);
         for (key, value) in remedy.iter() {
             unit.take(key, value);
         }

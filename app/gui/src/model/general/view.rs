@@ -2,13 +2,10 @@
 
 use std::ops::{Deref, DerefMut};
 
-use brushwork_link::device::QueuedJob;
-use brushwork_link::transport::Stream;
+use brushwork_link::{QueuedJob, Stream};
 
-use super::{General, Sheet};
-use crate::model::link::Effect;
-use crate::model::message::Gravity;
-use crate::model::settings::{Calibrating, Ended, Settings, SettingsAction, Summary, UnitSettings};
+use crate::model::settings::{Calibrating, Ended, Settings, Summary};
+use crate::model::{Effect, General, Gravity, SettingsAction, Sheet, UnitSettings};
 
 /// The screen with the settings that it shows.
 #[derive(Debug)]
@@ -126,7 +123,7 @@ impl GeneralView<'_> {
         self.sheet = None;
         self.waiting_sheet = None;
         self.calibration_lost();
-        self.clamp_test_lost();
+        self.clamp.forget_job();
         self.settings.link_ended();
     }
 

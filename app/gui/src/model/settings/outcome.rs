@@ -1,16 +1,16 @@
 //! What work with settings gave, taken over into a unit's settings and told in sentences.
 
-use brushwork_link::device::JobEnding;
 use brushwork_link::settings::{
-    DefaultsReport, Known, ReadReport, RowState, SaveReport, SaveVerdict, SettingsImage, SettingsTable,
-    WriteError, WriteReport,
+    DefaultsReport, Known, RowState, SaveReport, SaveVerdict, WriteError, WriteReport,
 };
+use brushwork_link::{JobEnding, ReadReport, SettingsImage, SettingsTable};
 
 use super::summary::Summary;
 use super::unit::UnitSettings;
 use super::work::Running;
 use crate::model::message::Gravity;
 use brushwork_core::settings::{Done, counted};
+use brushwork_core::words::capital;
 
 /// For the screen with all settings.
 pub(super) fn take(unit: &mut UnitSettings, done: Done, replaced: &SettingsImage) -> Summary {
@@ -171,9 +171,4 @@ fn restored(unit: &mut UnitSettings, report: DefaultsReport) -> Summary {
         summary += &format!(" {} came back with another value than listed here.", capital(&counted(own)));
     }
     Summary { gravity: Gravity::Note, summary, sentences: Vec::new(), address: Some(address) }
-}
-
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }

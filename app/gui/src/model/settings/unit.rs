@@ -20,9 +20,8 @@ use crate::family;
 #[derive(Debug)]
 pub struct UnitSettings {
     table: SettingsTable,
-    is_simulated: bool,
-    address: u8,
-    unit_address: UnitAddress,
+    pub is_simulated: bool,
+    pub unit_address: UnitAddress,
     firmware: String,
     copies: Copies,
     /// Wanted values that differ from the controller's.
@@ -38,11 +37,11 @@ pub struct UnitSettings {
     /// How far the controller was asked for each setting.
     asked: BTreeMap<String, Asked>,
     /// Whether all settings were asked for since RAM was last in doubt.
-    was_asked: bool,
+    pub(super) was_asked: bool,
     /// Whether all settings were read since the controller was last out of reach.
     is_read: bool,
     /// What the backup of the next of a series of small writes is made from.
-    known: Known,
+    pub(super) known: Known,
     revision: u64,
 }
 
@@ -89,7 +88,6 @@ impl UnitSettings {
         Self {
             table: SettingsTable::new(subject),
             is_simulated: identity.simulated,
-            address: identity.address,
             unit_address: identity.unit_address(),
             firmware: identity.version_text.trim_end().to_owned(),
             copies: Copies::default(),
@@ -139,19 +137,6 @@ impl UnitSettings {
         self.copies.eeprom()
     }
 
-    pub fn is_simulated(&self) -> bool {
-        self.is_simulated
-    }
-
-    pub fn address(&self) -> u8 {
-        self.address
-    }
-
-    /// Its address as profiles carry it.
-    pub fn unit_address(&self) -> UnitAddress {
-        self.unit_address
-    }
-
     /// What the unit says of itself.
     pub fn firmware(&self) -> &str {
         &self.firmware
@@ -160,7 +145,7 @@ impl UnitSettings {
     /// The same unit at another address.
     pub(super) fn at(self, address: u8) -> Self {
         let unit_address = UnitAddress::new(self.unit_address.family(), address).unwrap_or(self.unit_address);
-        Self { address, unit_address, ..self }
+        Self { unit_address, ..self }
     }
 
     /// Whether the controller's settings were read.
@@ -170,15 +155,6 @@ impl UnitSettings {
 
     pub fn was_asked(&self) -> bool {
         self.was_asked
-    }
-
-    pub(super) fn note_asked(&mut self) {
-        self.was_asked = true;
-    }
-
-    /// What was asked for gave way to something more urgent.
-    pub(super) fn forget_asked(&mut self) {
-        self.was_asked = false;
     }
 
     /// Which of these keys the controller has to be asked for: those that are not known, and those in doubt.
@@ -450,11 +426,6 @@ impl UnitSettings {
         }
         self.copies.note_ram(ram);
         self.drop_fulfilled();
-    }
-
-    /// What the next write makes its backup from; it hands it back with its report.
-    pub(super) fn take_known(&mut self) -> Known {
-        std::mem::take(&mut self.known)
     }
 
     /// Values were written. `replaced` are the edits of them that there were when that was asked for.

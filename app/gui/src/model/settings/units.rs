@@ -4,9 +4,8 @@
 
 use std::collections::BTreeMap;
 
-use brushwork_link::device::{Event, Identity, JobEnding, QueuedJob};
-use brushwork_link::settings::{SettingsImage, WriteReport};
-use brushwork_link::transport::Stream;
+use brushwork_link::settings::WriteReport;
+use brushwork_link::{Event, Identity, JobEnding, QueuedJob, SettingsImage, Stream};
 
 use super::kept::{Came, Kept};
 use super::outcome;
@@ -144,7 +143,7 @@ impl Settings {
             SettingsAction::OpenInput | SettingsAction::CloseInput | SettingsAction::Cancel => return None,
         };
         let job = self.begin_act(act, Origin::Settings(action), stream)?;
-        self.unit_mut()?.note_asked();
+        self.unit_mut()?.was_asked = true;
         Some(job)
     }
 
@@ -154,7 +153,7 @@ impl Settings {
         if wanted.is_empty() || self.is_busy() {
             return None;
         }
-        let known = self.unit_mut()?.take_known();
+        let known = std::mem::take(&mut self.unit_mut()?.known);
         self.begin_act(Act::Write { wanted, known }, Origin::Loop, stream)
     }
 
@@ -222,22 +221,17 @@ impl Settings {
     }
 
     /// Takes in an event of work that was begun here.
-    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn take(&mut self, event: Event) -> Option<Ended> {
         let id = event.job()?;
         let place = self.jobs.iter().position(|job| job.ticket.id() == id)?;
-        match event {
-            Event::JobProgress { fraction, text, .. } => {
-                let job = self.jobs.get_mut(place)?;
-                (job.fraction, job.text) = (fraction, text);
-                None
-            }
-            Event::JobEnded(report) => {
-                let job = self.jobs.remove(place);
-                self.ended(&job, &report.ending)
-            }
-            _ => None,
+        if let Event::JobProgress { fraction, text, .. } = event {
+            let job = self.jobs.get_mut(place)?;
+            (job.fraction, job.text) = (fraction, text);
+            return None;
         }
+        let Event::JobEnded(report) = event else { return None };
+        let job = self.jobs.remove(place);
+        self.ended(&job, &report.ending)
     }
 
     /// Takes in what work gave: the one place where a unit's settings change by what its controller says.
@@ -287,7 +281,7 @@ impl Settings {
         let Some(unit) = self.units.get_mut(&job.unit) else { return };
         match &job.origin {
             Origin::View(keys) => unit.forget_keys_asked(keys),
-            Origin::Settings(SettingsAction::Read) if job.is_quiet => unit.forget_asked(),
+            Origin::Settings(SettingsAction::Read) if job.is_quiet => unit.was_asked = false,
             Origin::Settings(_) | Origin::Loop => {}
         }
     }

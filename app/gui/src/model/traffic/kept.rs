@@ -3,9 +3,8 @@
 use std::task::Poll;
 use std::time::Duration;
 
-use brushwork_link::Failure;
-use brushwork_link::device::{Identity, Job, JobTicket, QueuedJob, Request};
-use brushwork_link::settings::{Ending, Keeper, begin_command};
+use brushwork_link::settings::{Ending, begin_command};
+use brushwork_link::{Failure, Identity, Job, JobTicket, Keeper, QueuedJob, Request};
 use brushwork_values::{Value, Values};
 
 use brushwork_core::keep::TrialKeeper;

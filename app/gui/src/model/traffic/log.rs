@@ -17,12 +17,12 @@ pub const MOST_BYTES: usize = 8 << 20;
 pub struct Log {
     transactions: VecDeque<Transaction>,
     bytes: usize,
-    dropped: u64,
+    pub dropped: u64,
     next_number: u64,
     first_at: Option<Duration>,
-    paused: bool,
+    pub paused: bool,
     /// Records that went by while it was paused.
-    missed: u64,
+    pub missed: u64,
     /// Something was not recorded, so that a request without an answer may have had one.
     interrupted: bool,
     filter: Filter,
@@ -164,11 +164,6 @@ impl Log {
         self.interrupted = false;
     }
 
-    /// Whether nothing is recorded for now.
-    pub fn is_paused(&self) -> bool {
-        self.paused
-    }
-
     pub fn set_paused(&mut self, paused: bool) {
         if paused && !self.paused {
             self.interrupted = true;
@@ -193,16 +188,6 @@ impl Log {
 
     pub fn is_empty(&self) -> bool {
         self.transactions.is_empty()
-    }
-
-    /// Transactions that had to make room.
-    pub fn dropped(&self) -> u64 {
-        self.dropped
-    }
-
-    /// Records that went by while it was paused.
-    pub fn missed(&self) -> u64 {
-        self.missed
     }
 
     /// Bytes of memory that the log takes, about.
@@ -415,7 +400,7 @@ mod tests {
         log.take(&sent(1500, &[0x80, 24]), "0x80 main battery", true);
         let outcomes: Vec<_> = (3..6).filter_map(|index| log.shown(index)).map(|one| one.outcome).collect();
         assert_eq!(outcomes, [Outcome::NotRecorded, Outcome::NotRecorded, Outcome::Waiting]);
-        assert_eq!((log.missed(), log.len()), (2, 6));
+        assert_eq!((log.missed, log.len()), (2, 6));
     }
 
     #[test]
@@ -425,7 +410,7 @@ mod tests {
             log.take(&sent(number * 10, &[0x80, 24]), "0x80 main battery", true);
             log.take(&received(number * 10 + 1, &[0, 243, 0, 0]), "24.3 V", true);
         }
-        assert_eq!(log.dropped() + log.len() as u64, MOST as u64 + 5_000);
+        assert_eq!(log.dropped + log.len() as u64, MOST as u64 + 5_000);
         assert!(log.len() <= MOST && log.bytes() <= MOST_BYTES && log.shown_len() == log.len());
         let heavy = vec![0x55; 1 << 20];
         for number in 0..20 {

@@ -38,14 +38,11 @@ pub struct Traffic {
 
 impl Traffic {
     /// Takes note of an event of the link.
-    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn note(&mut self, event: &Event) {
-        match event {
-            Event::Traffic { traffic, text, sound } => self.log.take(traffic, text, *sound),
-            Event::Transacted { id, result } => {
-                self.kept.answered(*id, result);
-            }
-            _ => {}
+        if let Event::Traffic { traffic, text, sound } = event {
+            self.log.take(traffic, text, *sound);
+        } else if let Event::Transacted { id, result } = event {
+            self.kept.answered(*id, result);
         }
     }
 

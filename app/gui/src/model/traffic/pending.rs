@@ -2,8 +2,7 @@
 
 use brushwork_link::device::Drive;
 
-use crate::model::connection::Connection;
-use crate::model::screen::Screen;
+use crate::model::{Connection, Screen};
 
 /// One packet that waits.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,7 +1,6 @@
 //! What a connection says of the Motion Mind that it is linked to, and what its screens ask for.
 
-use brushwork_link::device::Identity;
-use brushwork_link::settings::{SettingValue, SettingsImage};
+use brushwork_link::{Identity, SettingValue, SettingsImage};
 use brushwork_motion_mind_axis::law::MotionMindSetup;
 use brushwork_motion_mind_client::MotionMindFacts;
 use brushwork_motion_mind_wire::{Register, register_named};
@@ -13,8 +12,7 @@ use super::registers::{self, bit_key, key};
 use super::steps::touched;
 use super::{Driven, MotionMindConnection};
 use crate::family::Known;
-use crate::model::connection::Connection;
-use crate::model::setpoints::Direction;
+use crate::model::{Connection, Direction};
 
 impl Connection {
     /// What is kept of its own.

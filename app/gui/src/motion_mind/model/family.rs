@@ -10,16 +10,11 @@ use brushwork_tuning::cause::Cause;
 use brushwork_tuning::tune::Method;
 use brushwork_values::Motor;
 
-use super::MotionMindConnection;
 use super::connection::{cannot_tune, driven};
 use super::drive::to_send;
-use super::words;
+use super::{MotionMindConnection, words};
 use crate::family::{Ability, ActiveIndicator, Family, Figure, Figures, Known, Own, SettingsWords, Sliders};
-use crate::model::drawer::Tab;
-use crate::model::help_page::HelpPage;
-use crate::model::indicator::{IndicatorInfo, IndicatorState, state_of};
-use crate::model::screen::Screen;
-use crate::model::simulated::Simulated;
+use crate::model::{HelpPage, IndicatorInfo, IndicatorState, Screen, Simulated, Tab, state_of};
 use crate::tune::Loop;
 
 #[derive(Debug)]
@@ -280,27 +275,19 @@ const fn figure(channel: Channel, label: &'static str, unit: &'static str) -> Fi
 }
 
 const FIGURES: [Figures; 3] = [
-    Figures {
-        rows: &[figure(Channel::M1_POSITION, "Position", "counts")],
-        label_width: 56.0,
-        unit_letters: 6,
-        digits: 11,
-        zero: true,
-    },
-    Figures {
-        rows: &[figure(Channel::M1_VELOCITY, "Velocity", "counts/s"), figure(Channel::M1_PWM, "PWM", "%")],
-        label_width: 54.0,
-        unit_letters: 8,
-        digits: 8,
-        zero: false,
-    },
-    Figures {
-        rows: &[figure(Channel::M1_CURRENT, "Current", "A"), figure(Channel::TEMPERATURE_1, "Board", "°C")],
-        label_width: 50.0,
-        unit_letters: 2,
-        digits: 7,
-        zero: false,
-    },
+    Figures::new(&[figure(Channel::M1_POSITION, "Position", "counts")], 56.0, (6, 11), true),
+    Figures::new(
+        &[figure(Channel::M1_VELOCITY, "Velocity", "counts/s"), figure(Channel::M1_PWM, "PWM", "%")],
+        54.0,
+        (8, 8),
+        false,
+    ),
+    Figures::new(
+        &[figure(Channel::M1_CURRENT, "Current", "A"), figure(Channel::TEMPERATURE_1, "Board", "°C")],
+        50.0,
+        (2, 7),
+        false,
+    ),
 ];
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! What a Motion Mind 3 has of its own in the window: what its mode lets this program drive, and the state of its screens.
 
-use brushwork_link::device::{Event, Request, Sample};
+use brushwork_link::{Event, Request, Sample, SettingValue};
 use brushwork_motion_mind_wire::register_named;
 use std::time::Duration;
 
@@ -16,7 +16,6 @@ pub mod steps;
 pub mod terminal;
 mod words;
 
-use brushwork_link::settings::SettingValue;
 use drive::Reach;
 use radio::Radio;
 use registers::{FUNCTION, Live, bit_key, key};

@@ -7,12 +7,9 @@ use brushwork_link::device::{Event, Request};
 use brushwork_motion_mind_wire::{REGISTERS, Register, register_named};
 use brushwork_values::{Value, Values};
 
-pub const POSITION: &str = "POSITION";
-pub const VELOCITYLIMIT: &str = "VELOCITYLIMIT";
 pub const RCCOUNT: &str = "RCCOUNT";
 pub const FUNCTION: &str = "FUNCTION";
 pub const FUNCTION2: &str = "FUNCTION2";
-pub const STATUS: &str = "STATUS";
 
 /// READ with every register of the mask.
 const READ_ALL: u8 = 0x1A;

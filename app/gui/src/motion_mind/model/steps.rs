@@ -2,8 +2,7 @@
 
 use std::time::Duration;
 
-use brushwork_link::device::{Channel, Sample};
-use brushwork_link::settings::{SettingValue, SettingsImage};
+use brushwork_link::{Channel, Sample, SettingValue, SettingsImage};
 use brushwork_motion_mind_wire::register_named;
 use brushwork_tuning::{Point, StepFigures};
 
@@ -146,9 +145,9 @@ pub(super) fn touched() -> impl Iterator<Item = String> {
 pub struct StepAssistant {
     pub stage: usize,
     recording: Option<Recording>,
-    last: Option<Outcome>,
+    pub last: Option<Outcome>,
     /// What the registers were when the assistant began.
-    before: Option<SettingsImage>,
+    pub before: Option<SettingsImage>,
 }
 
 #[derive(Debug)]
@@ -181,11 +180,6 @@ impl StepAssistant {
         self.recording.is_some()
     }
 
-    /// What the last step came to.
-    pub fn last(&self) -> Option<Outcome> {
-        self.last
-    }
-
     /// Takes in a sample of the unit.
     pub fn note_sample(&mut self, sample: &Sample) {
         let Some(recording) = &mut self.recording else { return };
@@ -210,11 +204,6 @@ impl StepAssistant {
     /// Remembers what the registers are, once, so that they can be put back.
     pub fn remember(&mut self, connection_values: SettingsImage) {
         self.before.get_or_insert(connection_values);
-    }
-
-    /// What puts the registers back as they were.
-    pub fn before(&self) -> Option<&SettingsImage> {
-        self.before.as_ref()
     }
 
     /// The registers are as they were.
@@ -291,7 +280,7 @@ mod tests {
         assert!(response(|t| 1000.0 * (1.0 - (-t / 0.2).exp())).advice().contains("Go on to ITERM"));
         let oscillating = |t: f64| 1000.0 + 800.0 * (t * 8.0).cos();
         let assistant = response(oscillating);
-        assert!(assistant.last().unwrap().reversals > 4, "{:?}", assistant.last());
+        assert!(assistant.last.unwrap().reversals > 4, "{:?}", assistant.last);
         assert!(assistant.advice().contains("oscillates"));
     }
 

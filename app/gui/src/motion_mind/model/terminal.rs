@@ -9,14 +9,12 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use brushwork_link::device::Event;
-use brushwork_motion_mind_client::MotionMindFacts;
-use brushwork_motion_mind_client::{describe_received, describe_sent};
+use brushwork_motion_mind_client::{MotionMindFacts, describe_received, describe_sent};
 use brushwork_motion_mind_wire::{
     Address, Command, Effect, FrameEvent, FrameReader, LineEvent, LineReader, Part, Protocol, checksum,
     describe_command, encode_frame, encode_line,
 };
-use brushwork_values::hex;
-use brushwork_values::{Value, Values};
+use brushwork_values::{Value, Values, hex};
 
 /// Lines kept; the oldest go first.
 const KEPT: usize = 500;
@@ -62,7 +60,7 @@ pub struct Entry {
 pub struct Terminal {
     pub typed: String,
     pub form: Form,
-    entries: VecDeque<Entry>,
+    pub entries: VecDeque<Entry>,
     asked: u64,
     /// Which of the earlier lines the up key shows.
     recalled: Option<usize>,
@@ -249,10 +247,6 @@ impl Terminal {
             Form::Text => of_text(&self.typed),
             Form::Hex => of_hex(&self.typed),
         }
-    }
-
-    pub fn entries(&self) -> &VecDeque<Entry> {
-        &self.entries
     }
 
     pub fn clear(&mut self) {

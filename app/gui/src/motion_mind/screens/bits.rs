@@ -2,12 +2,10 @@
 
 use brushwork_link::settings::SettingValue;
 use brushwork_motion_mind_wire::{Bit, FUNCTION_BITS, FUNCTION2_BITS, Register, STATUS_BITS};
-use egui::{Button, Label, RichText, Role, Sense, Ui, WidgetInfo, vec2};
+use egui::{Button, Label, RichText, Role, Ui, WidgetInfo, vec2};
 
-use crate::model::connection::Connection;
-use crate::model::indicator::IndicatorState;
+use crate::model::{Connection, IndicatorState};
 use crate::motion_mind::model::registers::bit_key;
-use crate::theme::Palette;
 
 /// The bits of a register, where it has named ones.
 pub fn bits_of(register: &Register) -> &'static [Bit] {
@@ -50,9 +48,7 @@ pub fn bits_ui(ui: &mut Ui, connection: &mut Connection, register: &'static Regi
         } else {
             measured_ui(ui, connection, register, bit);
         }
-        let means = Label::new(
-            RichText::new(format!("Set: {}.", bit.set_means)).small().color(Palette::of(ui).weak_text),
-        );
+        let means = Label::new(RichText::new(format!("Set: {}.", bit.set_means)).small().weak());
         ui.indent(bit.number, |ui| ui.add(means.wrap()));
         ui.add_space(3.0);
     }
@@ -76,8 +72,7 @@ fn setting_ui(ui: &mut Ui, connection: &mut Connection, register: &Register, bit
             unit.set(&key, SettingValue::Bool(set));
         }
         if unit.is_edited(&key) {
-            let (rect, _) = ui.allocate_exact_size(vec2(14.0, 14.0), Sense::hover());
-            IndicatorState::Warning.paint(ui, rect.center(), 5.0);
+            IndicatorState::Warning.ui(ui, vec2(14.0, 14.0), 5.0);
             let revert = ui.add(Button::new("Revert").small());
             let name = format!("Revert {spoken}");
             revert.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
@@ -96,8 +91,7 @@ fn measured_ui(ui: &mut Ui, connection: &Connection, register: &Register, bit: &
         Some(false) => (IndicatorState::Ok, "clear"),
     };
     ui.horizontal(|ui| {
-        let (rect, _) = ui.allocate_exact_size(vec2(16.0, 16.0), Sense::hover());
-        state.paint(ui, rect.center(), 5.0);
+        state.ui(ui, vec2(16.0, 16.0), 5.0);
         let text = ui.label(format!("{} {}: {word}", bit.number, bit.name));
         text.widget_info(|| {
             WidgetInfo::labeled(Role::Label, true, format!("{} {}: {word}", register.name, bit.name))

@@ -7,15 +7,12 @@ use egui::{Button, Label, RichText, Ui};
 
 use crate::command::{Command, Commands};
 use crate::graph::panel;
-use crate::model::Model;
-use crate::model::screen::Screen;
+use crate::model::{Model, Screen};
 use crate::motion_mind::model::Driven;
 use crate::motion_mind::model::drive::{LOOPS_PER_S, VELOCITY_RANGE};
 use crate::screens::drive::{Output, drive_ui, motor_ui, on_release_ui, options_ui, pace_ui};
 use crate::screens::{not_connected_text, nothing_ui, title_ui};
-use crate::theme::Palette;
-use crate::widgets::numeric::Numeric;
-use crate::widgets::setpoint::Setpoint;
+use crate::widgets::{Numeric, Setpoint};
 
 const fn output(scope: ArmScope, word: &'static str, channel: Channel, unit: &'static str) -> Output {
     Output { scope, word, channels: [channel; 2], unit, digits: 9, unit_letters: 7, width: 204.0 }
@@ -58,7 +55,7 @@ pub fn duty_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
                     &jog,
                     &mut model.front.pwm.jog_percent,
                 );
-                other_modes_ui(ui, "For velocity and positions set the switches to mode 4.");
+                ui.weak("For velocity and positions set the switches to mode 4.");
             });
         });
     }
@@ -108,9 +105,8 @@ pub fn velocity_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
                     &mut reach.top_counts_per_loop,
                 );
                 let asked = model.front.velocity.setpoints.values[0];
-                let weak = Palette::of(ui).weak_text;
                 let text = format!("Asked: {asked:.0} counts/loop = {:.0} counts/s", asked * LOOPS_PER_S);
-                ui.label(RichText::new(text).color(weak));
+                ui.weak(text);
             });
         });
     }
@@ -202,11 +198,6 @@ fn head(
         return None;
     }
     Some((title, note, scope))
-}
-
-fn other_modes_ui(ui: &mut Ui, text: &str) {
-    let weak = Palette::of(ui).weak_text;
-    ui.label(RichText::new(text).color(weak));
 }
 
 /// What moves the motor in a mode that is not driven from here, and which mode to set.

@@ -3,11 +3,12 @@
 use std::sync::OnceLock;
 
 use brushwork_motion_mind_wire::{BitEntry, CommandEntry, RegisterEntry, reference};
-use egui::{Label, RichText, Ui};
+use egui::{Label, Ui};
 
 use crate::help::list::{Entry, list_ui};
-use crate::help::{note_ui, scrolled_ui};
+use crate::help::scrolled_ui;
 use crate::model::help::Help;
+use brushwork_core::words::capital;
 
 /// What a person has to know beside the tables (Motion Mind manual, chapters 3 to 6).
 const GUIDE: [(&str, &[&str]); 8] = [
@@ -109,7 +110,7 @@ pub fn motion_mind_ui(ui: &mut Ui, help: &mut Help) {
     scrolled_ui(ui, |ui| match chosen {
         Some(page) => page_ui(ui, page),
         None => {
-            note_ui(ui, "Choose a subject, a command or a register at the left.");
+            ui.weak("Choose a subject, a command or a register at the left.");
             for (title, lines) in &GUIDE[..2] {
                 guide_ui(ui, title, lines.iter().copied());
             }
@@ -119,7 +120,7 @@ pub fn motion_mind_ui(ui: &mut Ui, help: &mut Help) {
 
 fn guide_ui<'a>(ui: &mut Ui, title: &str, lines: impl Iterator<Item = &'a str>) {
     ui.add_space(6.0);
-    ui.label(RichText::new(title).strong());
+    ui.strong(title);
     for line in lines {
         ui.add(Label::new(line).wrap());
         ui.add_space(3.0);
@@ -156,7 +157,10 @@ fn pages() -> Vec<Page> {
 }
 
 fn command_page(command: &CommandEntry) -> Page {
-    let mut lines = vec![format!("{}.", capital(command.help)), format!("Binary: {}", command.frame)];
+    let mut lines = vec![
+        format!("{}.", capital(command.help.trim_end_matches('.'))),
+        format!("Binary: {}", command.frame),
+    ];
     match command.line.is_empty() {
         true => lines.push("It has no form in text.".to_owned()),
         false => lines.push(format!("Text: {}", command.line)),
@@ -176,14 +180,9 @@ fn register_page<'a>(register: &RegisterEntry, bits: impl Iterator<Item = &'a Bi
     let default = register.default.map_or_else(String::new, |value| format!("Factory value {value}."));
     let facts = [access.to_owned(), bytes, range, unit, default];
     let facts: Vec<String> = facts.into_iter().filter(|fact| !fact.is_empty()).collect();
-    let mut lines = vec![format!("{}.", capital(register.help)), facts.join(" ")];
+    let mut lines = vec![format!("{}.", capital(register.help.trim_end_matches('.'))), facts.join(" ")];
     lines.extend(bits.map(|bit| format!("Bit {} {}: {}.", bit.bit, bit.name, bit.set_means)));
     page(format!("register {}", register.number), format!("{} {}", register.number, register.name), lines)
-}
-
-fn capital(text: &str) -> String {
-    let mut letters = text.trim_end_matches('.').chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 #[cfg(test)]

@@ -2,18 +2,15 @@
 //! (Motion Mind manual 4.3).
 
 use brushwork_motion_mind_wire::{register_named, status};
-use egui::{Button, Frame, Label, Margin, ProgressBar, RichText, Role, Sense, Stroke, Ui, WidgetInfo, vec2};
+use egui::{Button, Frame, Label, Margin, ProgressBar, RichText, Role, Stroke, Ui, WidgetInfo, vec2};
 
 use crate::command::{Command, Commands};
-use crate::model::Model;
-use crate::model::connection::Connection;
-use crate::model::indicator::IndicatorState;
+use crate::model::{Connection, IndicatorState, Model};
 use crate::motion_mind::MindAction;
 use crate::motion_mind::model::radio::{STEP_MS, Stage, WIDE};
 use crate::motion_mind::model::registers::in_unit;
 use crate::screens::{not_connected_text, nothing_ui, title_ui};
-use crate::theme;
-use crate::theme::Palette;
+use crate::theme::{self, Palette};
 use crate::widgets::label::fixed_label_ui;
 
 const NAME_WIDTH: f32 = 150.0;
@@ -37,7 +34,7 @@ pub fn inputs_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 /// One measured input: name, what it means in this mode, and how far it is in its range.
 fn measured_ui(ui: &mut Ui, connection: &Connection) {
     let mode = connection.mode();
-    ui.label(RichText::new("Measured").strong());
+    ui.strong("Measured");
     for (register, pin, range) in
         [("ANALOGCON", "J4 P4", 1023.0), ("ANALOGFBCK", "J4 P3", 1023.0), ("RCCOUNT", "J6 P2", 1440.0)]
     {
@@ -53,11 +50,10 @@ fn measured_ui(ui: &mut Ui, connection: &Connection) {
             response.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, &spoken));
             ui.label(RichText::new(&text).text_style(theme::figures()));
         });
-        let color = Palette::of(ui).weak_text;
-        ui.label(RichText::new(meaning(mode, register)).small().color(color));
+        ui.label(RichText::new(meaning(mode, register)).small().weak());
     }
     ui.add_space(8.0);
-    ui.label(RichText::new("Switches").strong());
+    ui.strong("Switches");
     for (bit, name, means) in [
         (status::POSLIMIT, "POS_LIM, J4 P17", switch_meaning(mode, true)),
         (status::NEGLIMIT, "NEG_LIM, J4 P16", switch_meaning(mode, false)),
@@ -77,12 +73,10 @@ fn switch_ui(ui: &mut Ui, connection: &Connection, bit: u16, name: &str, means: 
     };
     ui.horizontal(|ui| {
         ui.set_min_height(ROW_HEIGHT);
-        let (rect, response) = ui.allocate_exact_size(vec2(18.0, ROW_HEIGHT), Sense::hover());
-        state.paint(ui, rect.center(), 6.0);
+        let response = state.ui(ui, vec2(18.0, ROW_HEIGHT), 6.0);
         response.widget_info(|| WidgetInfo::labeled(Role::Status, true, format!("{name}: {word}")));
         ui.add(Label::new(format!("{name}: {word}")).selectable(false));
-        let color = Palette::of(ui).weak_text;
-        ui.add(Label::new(RichText::new(means).small().color(color)).truncate());
+        ui.add(Label::new(RichText::new(means).small().weak()).truncate());
     });
 }
 
@@ -117,7 +111,7 @@ fn radio_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let frame = Frame::new().stroke(Stroke::new(1.0, palette.line)).corner_radius(4.0);
     frame.inner_margin(Margin::symmetric(10, 8)).show(ui, |ui| {
         ui.set_width(ui.available_width());
-        ui.label(RichText::new("R/C calibration").strong());
+        ui.strong("R/C calibration");
         if model.front.mode() != Some(0) {
             let text = "R/C moves the motor in mode 0 alone. Set SW1 to mode 0 (MODE2, MODE1 and MODE0 on) and switch the power off \
                         and on; then the ends of the stick are found here.";
@@ -139,9 +133,8 @@ fn pulse_ui(ui: &mut Ui, connection: &Connection, count: Option<i64>) {
         None => "Pulse not read yet".to_owned(),
     };
     ui.horizontal(|ui| {
-        let (rect, _) = ui.allocate_exact_size(vec2(18.0, ROW_HEIGHT), Sense::hover());
         let state = if bad { IndicatorState::Warning } else { IndicatorState::Ok };
-        state.paint(ui, rect.center(), 6.0);
+        state.ui(ui, vec2(18.0, ROW_HEIGHT), 6.0);
         ui.label(RichText::new(text).text_style(theme::figures()));
         if bad {
             ui.label("bad or missing");
@@ -166,7 +159,7 @@ fn stage_ui(ui: &mut Ui, model: &mut Model, count: Option<i64>, is_position: boo
     if let Some([max, min, band]) = model.front.mind().radio.result(is_position) {
         for (name, value) in [("RCMAX", max), ("RCMIN", min), ("RCBAND", band)] {
             let text = format!("{name} {value} ({:.3} ms)", value as f64 * STEP_MS);
-            ui.label(RichText::new(&text).strong());
+            ui.strong(&text);
         }
     }
     let mut reported = None;

@@ -7,11 +7,7 @@ use super::model::family::HELP;
 use super::model::terminal::Sending;
 use crate::actions::{Action, Keys, page};
 use crate::command::{Command, Commands};
-use crate::model::Model;
-use crate::model::help::Help;
-use crate::model::help_page::HelpPage;
-use crate::model::screen::Screen;
-use crate::model::simulated::Simulated;
+use crate::model::{Help, HelpPage, Model, Screen, Simulated};
 use crate::screens::face::Face;
 use crate::screens::{nothing_ui, status};
 
@@ -63,13 +59,7 @@ impl Face for MotionMind {
     }
 }
 
-const ACTION: Action = page!(
-    "help.motion-mind",
-    HELP.title,
-    Keys::None,
-    HELP,
-    "How to connect, drive and tune a Motion Mind 3; its commands, registers and bits."
-);
+const ACTION: Action = page!("help.motion-mind": HELP.title, Keys::None, HELP, "How to connect, drive and tune a Motion Mind 3; its commands, registers and bits.");
 
 impl From<Sending> for Command {
     fn from(sending: Sending) -> Self {

@@ -12,16 +12,12 @@ use egui::{
 
 use super::bits::{bits_ui, has_bits};
 use crate::command::Commands;
-use crate::model::Model;
-use crate::model::connection::Connection;
-use crate::model::indicator::IndicatorState;
-use crate::model::settings::UnitSettings;
+use crate::model::{Connection, IndicatorState, Model, UnitSettings};
 use crate::motion_mind::model::registers::{in_unit, key};
 use crate::screens::general::{editor, framed_ui};
-use crate::theme;
-use crate::theme::Palette;
-use crate::widgets::label::fixed_label_ui;
-use crate::widgets::readout::NO_VALUE;
+use crate::theme::{self, Palette};
+use crate::widgets::{NO_VALUE, fixed_label_ui};
+use brushwork_core::words::capital;
 
 const HEIGHT: f32 = 27.0;
 const MARK_WIDTH: f32 = 16.0;
@@ -99,7 +95,7 @@ fn table_ui(ui: &mut Ui, connection: &mut Connection) {
 
 /// Draws a register; true when it is the one to explain.
 fn row_ui(ui: &mut Ui, connection: &mut Connection, register: &'static Register, is_chosen: bool) -> bool {
-    let palette = Palette::of(ui);
+    let _palette = Palette::of(ui);
     let mut wants = false;
     let size = vec2(ui.available_width(), HEIGHT);
     ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
@@ -129,7 +125,7 @@ fn row_ui(ui: &mut Ui, connection: &mut Connection, register: &'static Register,
         } else {
             let reported = connection.mind().live.get(register).and_then(|raw| in_unit(register, raw));
             let reported = reported.unwrap_or_default();
-            let text = Label::new(RichText::new(&reported).small().color(palette.weak_text)).truncate();
+            let text = Label::new(RichText::new(&reported).small().weak()).truncate();
             ui.add_sized(vec2(VALUE_WIDTH, HEIGHT), text);
         }
     });
@@ -149,8 +145,7 @@ fn wanted_ui(ui: &mut Ui, connection: &mut Connection, register: &'static Regist
     }
     let Some(unit) = connection.settings.unit_mut() else { return false };
     let Some(row) = unit.table().row(&key(register)).cloned() else {
-        let weak = Palette::of(ui).weak_text;
-        ui.label(RichText::new(if register.is_writable() { "" } else { "measured" }).small().color(weak));
+        ui.label(RichText::new(if register.is_writable() { "" } else { "measured" }).small().weak());
         return false;
     };
     let locked = unit.locked(&row).is_some();
@@ -255,7 +250,7 @@ fn panel_ui(ui: &mut Ui, connection: &mut Connection) {
     frame.inner_margin(Margin::symmetric(10, 8)).show(ui, |ui| {
         ui.set_width(ui.available_width());
         ui.set_height(ui.available_height() - 2.0);
-        ui.label(RichText::new(format!("{} (register {})", register.name, register.number)).strong());
+        ui.strong(format!("{} (register {})", register.name, register.number));
         ScrollArea::vertical().id_salt(("register", register.number)).auto_shrink(false).show(ui, |ui| {
             about_ui(ui, connection, register);
             if has_bits(register) {
@@ -281,7 +276,7 @@ fn about_ui(ui: &mut Ui, connection: &Connection, register: &Register) {
             ui.add(Label::new(RichText::new(reason).color(palette.warning)).wrap());
         }
     }
-    ui.add(Label::new(RichText::new(facts(register)).color(palette.weak_text)).wrap());
+    ui.add(Label::new(RichText::new(facts(register)).weak()).wrap());
     let raw = connection.register(register.name);
     if let Some(text) = raw.and_then(|raw| in_unit(register, raw)) {
         ui.add(Label::new(format!("Now {text}.")).wrap());
@@ -317,11 +312,4 @@ fn unsaved_ui(ui: &mut Ui, connection: &Connection, register: &Register) {
             ui.add(Label::new(RichText::new(text).color(Palette::of(ui).accent)).wrap());
         }
     }
-}
-
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters
-        .next()
-        .map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + letters.as_str())
 }

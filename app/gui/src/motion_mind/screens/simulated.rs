@@ -3,29 +3,20 @@
 use egui::{ComboBox, Ui};
 
 use crate::model::simulated::Simulated;
-use crate::widgets::label::name_combo;
+use crate::widgets::choice_ui;
 
 /// The switches: they are read at its power-up, so that another choice is another unit.
 pub fn switches_ui(ui: &mut Ui, simulated: &mut Simulated) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         let text = |mode: u8| format!("{mode} {}", MODES[usize::from(mode).min(MODES.len() - 1)]);
-        let combo =
-            ComboBox::from_id_salt("mode").width(104.0).selected_text(text(simulated.mode)).truncate();
-        let response = combo.show_ui(ui, |ui| {
-            for mode in 0..=7 {
-                ui.selectable_value(&mut simulated.mode, mode, text(mode));
-            }
-        });
-        name_combo(ui, &response.response, "Mode", "What moves the motor: switches 2 to 4 of the board");
+        let list = ComboBox::from_id_salt("mode").width(104.0).truncate();
+        choice_ui(ui, list, "Mode", &mut simulated.mode, 0..=7, text)
+            .on_hover_text("What moves the motor: switches 2 to 4 of the board");
         let text = |is_text: bool| if is_text { "ASCII" } else { "Binary" };
-        let combo = ComboBox::from_id_salt("protocol").width(60.0).selected_text(text(simulated.is_text));
-        let response = combo.show_ui(ui, |ui| {
-            for is_text in [false, true] {
-                ui.selectable_value(&mut simulated.is_text, is_text, text(is_text));
-            }
-        });
-        name_combo(ui, &response.response, "Protocol", "Switch 6 of the board");
+        let list = ComboBox::from_id_salt("protocol").width(60.0);
+        choice_ui(ui, list, "Protocol", &mut simulated.is_text, [false, true], text)
+            .on_hover_text("Switch 6 of the board");
     });
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;

@@ -7,8 +7,7 @@ use crate::command::{Command, Commands};
 use crate::model::Model;
 use crate::motion_mind::MindAction;
 use crate::motion_mind::model::steps::{Outcome, STAGES, prepared};
-use crate::theme;
-use crate::theme::Palette;
+use crate::theme::{self};
 
 pub fn steps_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let at = model.front.mind().steps.stage.min(STAGES.len() - 1);
@@ -32,7 +31,7 @@ pub fn steps_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
                 commands.push(Command::own(MindAction::Turn(image)));
             }
         }
-        if let Some(before) = model.front.mind().steps.before() {
+        if let Some(before) = &model.front.mind().steps.before {
             let hint = "The registers as they were when the assistant first changed one";
             if ui.add_enabled(is_free, Button::new("Put all back")).on_hover_text(hint).clicked() {
                 commands.push(Command::own(MindAction::PutBack(before.clone())));
@@ -58,14 +57,13 @@ fn stages_ui(ui: &mut Ui, model: &mut Model, at: usize) {
 
 /// What the registers hold now.
 fn held_ui(ui: &mut Ui, model: &Model) {
-    let weak = Palette::of(ui).weak_text;
     ui.separator();
     for name in ["PTERM", "ITERM", "DTERM", "PIDSCALAR", "VELOCITYFF"] {
         let value = register_named(name).and_then(|_| model.front.register(name));
         let text = value.map_or_else(|| "–".to_owned(), |value| value.to_string());
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 4.0;
-            ui.label(RichText::new(name).small().color(weak));
+            ui.label(RichText::new(name).small().weak());
             let figure = ui.label(RichText::new(&text).text_style(theme::figures()));
             let spoken = format!("{name} held: {text}");
             figure.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &spoken));
@@ -76,7 +74,7 @@ fn held_ui(ui: &mut Ui, model: &Model) {
 /// The last step in figures, and what it says.
 fn outcome_ui(ui: &mut Ui, model: &Model) {
     let steps = &model.front.mind().steps;
-    let text = match (steps.is_recording(), steps.last()) {
+    let text = match (steps.is_recording(), steps.last) {
         (true, _) => "Recording the response for 4 s …".to_owned(),
         (false, Some(last)) => figures_text(last),
         (false, None) => "No step yet. Use Step + and − Step above; their size is beside them.".to_owned(),

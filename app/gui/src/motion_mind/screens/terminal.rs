@@ -9,7 +9,7 @@ use crate::model::Model;
 use crate::motion_mind::model::terminal::{Entry, Form, Terminal, Understood};
 use crate::screens::{not_connected_text, nothing_ui, title_ui};
 use crate::theme::Palette;
-use crate::widgets::text_field::text_field_ui;
+use crate::widgets::{choice_ui, text_field_ui};
 
 /// Room below the list: the field and what it means.
 const ENTRY_HEIGHT: f32 = 118.0;
@@ -45,21 +45,21 @@ pub fn terminal_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             understood_ui(ui, terminal, &understood, (address, facts), entered, commands);
         }
         Err(why) => {
-            ui.add(Label::new(RichText::new(why).color(Palette::of(ui).weak_text)).wrap());
+            ui.add(Label::new(RichText::new(why).weak()).wrap());
             as_typed_ui(ui, terminal, facts, commands);
         }
     }
 }
 
 fn list_ui(ui: &mut Ui, terminal: &Terminal) {
-    let palette = Palette::of(ui);
-    if terminal.entries().is_empty() {
+    let _palette = Palette::of(ui);
+    if terminal.entries.is_empty() {
         let hint = "Nothing was sent yet. R01 04 reads PTERM of unit 1, W01 04 6000 writes it to RAM, S01 04 6000 stores it, \
                     R01 99 reads all registers. In hex the same are 1D 01 04 22 and 18 01 04 70 17 A4.";
-        ui.add(Label::new(RichText::new(hint).color(palette.weak_text)).wrap());
+        ui.add(Label::new(RichText::new(hint).weak()).wrap());
     }
     ScrollArea::vertical().id_salt("terminal").auto_shrink(false).stick_to_bottom(true).show(ui, |ui| {
-        terminal.entries().iter().for_each(|entry| entry_ui(ui, entry));
+        terminal.entries.iter().for_each(|entry| entry_ui(ui, entry));
     });
 }
 
@@ -67,7 +67,7 @@ fn entry_ui(ui: &mut Ui, entry: &Entry) {
     let palette = Palette::of(ui);
     ui.add(Label::new(RichText::new(format!("> {}", entry.sent)).monospace()).wrap());
     ui.indent(&entry.sent, |ui| {
-        ui.add(Label::new(RichText::new(&entry.meaning).color(palette.weak_text)).wrap());
+        ui.add(Label::new(RichText::new(&entry.meaning).weak()).wrap());
     });
     if let Some(received) = &entry.received {
         ui.add(Label::new(RichText::new(format!("< {received}")).monospace()).wrap());
@@ -83,13 +83,8 @@ fn entry_ui(ui: &mut Ui, entry: &Entry) {
 fn field_ui(ui: &mut Ui, terminal: &mut Terminal) -> bool {
     ui.horizontal(|ui| {
         let text = |form: Form| if form == Form::Text { "Text" } else { "Hex" };
-        let combo = ComboBox::from_id_salt("form").width(64.0).selected_text(text(terminal.form));
-        let shown = combo.show_ui(ui, |ui| {
-            for form in [Form::Text, Form::Hex] {
-                ui.selectable_value(&mut terminal.form, form, text(form));
-            }
-        });
-        ui.ctx().accesskit_node_builder(shown.response.id, |node| node.set_label("Form of the command"));
+        let list = ComboBox::from_id_salt("form").width(64.0);
+        choice_ui(ui, list, "Form of the command", &mut terminal.form, [Form::Text, Form::Hex], text);
         let hint = if terminal.form == Form::Text { "R01 04" } else { "1D 01 04 22" };
         let room = vec2(ui.available_width() - 90.0, ui.spacing().interact_size.y);
         let field =
@@ -122,7 +117,7 @@ fn as_typed_ui(ui: &mut Ui, terminal: &mut Terminal, facts: MotionMindFacts, com
             commands.extend(terminal.send_as_typed(facts).map(Command::from));
         }
         if let Err(why) = can {
-            ui.add(Label::new(RichText::new(why).color(Palette::of(ui).weak_text)).truncate());
+            ui.add(Label::new(RichText::new(why).weak()).truncate());
         }
     });
 }
@@ -140,7 +135,7 @@ fn understood_ui(
     let forms =
         [understood.line(), understood.bytes()].into_iter().flatten().collect::<Vec<_>>().join("  |  ");
     ui.add(Label::new(format!("Means: {}", understood.meaning())).truncate());
-    ui.add(Label::new(RichText::new(forms).monospace().color(palette.weak_text)).truncate());
+    ui.add(Label::new(RichText::new(forms).monospace().weak()).truncate());
     let refusal = understood.refusal(address);
     ui.horizontal(|ui| {
         let send = ui.add_enabled(refusal.is_none(), egui::Button::new("Send command")).clicked();

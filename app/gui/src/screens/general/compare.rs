@@ -4,10 +4,8 @@ use brushwork_link::settings::{Difference, Group};
 use egui::{Button, ComboBox, Grid, RichText, Role, Ui, WidgetInfo};
 
 use super::sheet_parts::{Act, Offer, indicator_ui, text_ui, title_ui};
-use crate::model::general::{Comparison, GeneralView, Side, Take};
-use crate::model::indicator::IndicatorState;
-use crate::model::settings::UnitSettings;
-use crate::theme::Palette;
+use crate::model::general::{Comparison, Side, Take};
+use crate::model::{GeneralView, IndicatorState, UnitSettings};
 
 /// Room for the longest name of a backup.
 const SIDE_WIDTH: f32 = 300.0;
@@ -25,7 +23,7 @@ pub fn compare_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
     for note in &comparison.notes {
         indicator_ui(ui, IndicatorState::Warning, note);
     }
-    if let (Side::Profile, Some(opened)) = (&general.comparing.right, general.profiles.opened()) {
+    if let (Side::Profile, Some(opened)) = (&general.comparing.right, &general.profiles.opened) {
         for sentence in &opened.corrected {
             indicator_ui(ui, IndicatorState::Warning, sentence);
         }
@@ -80,7 +78,7 @@ fn groups_ui(ui: &mut Ui, unit: &UnitSettings, comparison: &Comparison) -> Optio
     for (group, differences) in &comparison.groups {
         ui.add_space(4.0);
         ui.horizontal(|ui| {
-            ui.label(RichText::new(group.label()).strong());
+            ui.strong(group.label());
             let response = ui.add(Button::new("Take over group").small());
             let name = format!("Take over group {}", group.label());
             response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
@@ -107,19 +105,18 @@ fn group_ui(ui: &mut Ui, unit: &UnitSettings, group: Group, differences: &[Diffe
 
 fn row_ui(ui: &mut Ui, unit: &UnitSettings, difference: &Difference) -> bool {
     let Some(row) = unit.table().row(&difference.key) else { return false };
-    let weak = Palette::of(ui).weak_text;
     let text = |value: Option<_>| value.map_or_else(|| "not known".to_owned(), |value| row.format(value));
     cell_ui(ui, COLUMNS[0], RichText::new(row.title()));
-    cell_ui(ui, COLUMNS[1], RichText::new(text(difference.left)).color(weak));
+    cell_ui(ui, COLUMNS[1], RichText::new(text(difference.left)).weak());
     let new = cell_ui(ui, COLUMNS[2], RichText::new(text(difference.right)).strong());
     new.widget_info(|| WidgetInfo::labeled(Role::Label, true, difference.describe(row)));
-    let locked = row.locked(unit.is_simulated());
+    let locked = row.locked(unit.is_simulated);
     let is_taken = unit.edits().get(&row.key).is_some() && unit.edits().get(&row.key) == difference.right;
     let clicked = if is_taken {
-        ui.label(RichText::new("taken over").color(weak));
+        ui.weak("taken over");
         false
     } else if let Some(reason) = locked {
-        ui.label(RichText::new("cannot be written here").color(weak)).on_hover_text(reason);
+        ui.weak("cannot be written here").on_hover_text(reason);
         false
     } else {
         let response = ui.add(Button::new("Take over").small());

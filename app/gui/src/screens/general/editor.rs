@@ -7,8 +7,7 @@ use egui::{ComboBox, Id, Key, Response, RichText, Stroke, TextEdit, Ui, vec2};
 
 use crate::family;
 use crate::model::settings::UnitSettings;
-use crate::theme;
-use crate::theme::Palette;
+use crate::theme::{self, Palette};
 
 const NUMBER_WIDTH: f32 = 112.0;
 const LIST_WIDTH: f32 = 164.0;
@@ -98,7 +97,7 @@ fn number_ui(ui: &mut Ui, unit: &mut UnitSettings, row: &Row) -> Response {
         .inner;
     let symbol = row.unit.symbol();
     if !symbol.is_empty() {
-        ui.label(RichText::new(symbol).small().color(palette.weak_text));
+        ui.label(RichText::new(symbol).small().weak());
     }
     if response.gained_focus() {
         select_all(ui, &response, text.chars().count());

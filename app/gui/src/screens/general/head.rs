@@ -4,10 +4,8 @@ use egui::{Button, Label, ProgressBar, RichText, Role, Ui, WidgetInfo, vec2};
 
 use crate::command::{Command, Commands};
 use crate::family::{Ability, Family, SettingsWords};
-use crate::model::general::{GeneralView, Sheet};
-use crate::model::indicator::IndicatorState;
-use crate::model::settings::{Running, Saved, SettingsAction, UnitSettings};
-use crate::theme::Palette;
+use crate::model::settings::{Running, Saved};
+use crate::model::{GeneralView, IndicatorState, SettingsAction, Sheet, UnitSettings};
 use crate::widgets::text_field::text_field_ui;
 
 const SEARCH_WIDTH: f32 = 190.0;
@@ -51,8 +49,7 @@ fn saved_mark(unit: &UnitSettings) -> (IndicatorState, String) {
 
 fn mark_ui(ui: &mut Ui, state: IndicatorState, title: &str, text: &str) {
     ui.add_space(6.0);
-    let (rect, _) = ui.allocate_exact_size(vec2(14.0, 14.0), egui::Sense::hover());
-    state.paint(ui, rect.center(), 6.0);
+    state.ui(ui, vec2(14.0, 14.0), 6.0);
     let spoken = format!("{title}: {text}");
     let response = ui.add(Label::new(&spoken).selectable(false));
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
@@ -116,7 +113,7 @@ fn buttons_ui(ui: &mut Ui, general: &mut GeneralView<'_>, family: &dyn Family) {
     let mut wanted = None;
     ui.horizontal_wrapped(|ui| {
         for (text, name, enabled, note, sheet) in buttons.into_iter().chain(copy).chain(unfinished) {
-            let is_open = general.sheet() == Some(&sheet);
+            let is_open = general.sheet.as_ref() == Some(&sheet);
             let response = ui.add_enabled(
                 enabled,
                 Button::selectable(is_open, text).frame_when_inactive(true).min_size(vec2(BUTTON_WIDTH, 0.0)),
@@ -140,7 +137,7 @@ fn filter_ui(ui: &mut Ui, general: &mut GeneralView<'_>, words: &SettingsWords, 
         ui.allocate_ui(vec2(SEARCH_WIDTH, ui.spacing().interact_size.y), |ui| {
             let search = text_field_ui(ui, &mut general.search, "Search settings", "Search");
             is_new |= search.changed();
-            if general.take_search_focus() {
+            if std::mem::take(&mut general.wants_search) {
                 search.request_focus();
             }
         });
@@ -170,8 +167,7 @@ fn idle_ui(ui: &mut Ui, general: &GeneralView<'_>, many: &str) {
     } else {
         format!("{all} {many}")
     };
-    let color = Palette::of(ui).weak_text;
-    ui.add(Label::new(RichText::new(text).color(color)).truncate());
+    ui.add(Label::new(RichText::new(text).weak()).truncate());
 }
 
 fn running_ui(ui: &mut Ui, running: &Running, commands: &mut Commands) {

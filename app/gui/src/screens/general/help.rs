@@ -3,8 +3,7 @@
 use brushwork_link::settings::{Bound, Row};
 use egui::{Frame, Label, Margin, RichText, ScrollArea, Stroke, Ui};
 
-use crate::model::general::GeneralView;
-use crate::model::settings::UnitSettings;
+use crate::model::{GeneralView, UnitSettings};
 use crate::theme::Palette;
 
 /// Its height on a screen of `available` points: less where the settings themselves have little room.
@@ -25,7 +24,7 @@ pub fn help_ui(ui: &mut Ui, general: &GeneralView<'_>, height: f32) {
                 Some((unit, row)) => row_ui(ui, unit, row),
                 None => {
                     let hint = "Point at a setting, or move the keyboard focus to it, to read what it does.";
-                    ui.label(RichText::new(hint).color(palette.weak_text));
+                    ui.weak(hint);
                 }
             }
         });
@@ -34,7 +33,7 @@ pub fn help_ui(ui: &mut Ui, general: &GeneralView<'_>, height: f32) {
 
 fn row_ui(ui: &mut Ui, unit: &UnitSettings, row: &Row) {
     let palette = Palette::of(ui);
-    ui.label(RichText::new(row.title()).strong());
+    ui.strong(row.title());
     if let Some(trouble) = unit.trouble(&row.key) {
         ui.add(Label::new(RichText::new(trouble).color(palette.error)).wrap());
     }
@@ -42,7 +41,7 @@ fn row_ui(ui: &mut Ui, unit: &UnitSettings, row: &Row) {
         ui.add(Label::new(RichText::new(reason).color(palette.warning)).wrap());
     }
     ui.add(Label::new(row.help).wrap());
-    ui.add(Label::new(RichText::new(figures(unit, row)).color(palette.weak_text)).wrap());
+    ui.add(Label::new(RichText::new(figures(unit, row)).weak()).wrap());
 }
 
 /// Range, default, and what the value means besides its text.

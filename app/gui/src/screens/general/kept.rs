@@ -1,13 +1,10 @@
 //! The sheets of what is kept on this computer: backups, what was cut short; and the one that copies a motor.
 
 use brushwork_link::settings::{Aftermath, Difference, Held, Row};
-use egui::{Button, Grid, RichText, Role, Ui, WidgetInfo};
+use egui::{Button, Grid, Role, Ui, WidgetInfo};
 
 use super::sheet_parts::{Act, Offer, differences_ui, indicator_ui, text_ui, title_ui};
-use crate::model::general::{GeneralView, Sheet, Side};
-use crate::model::indicator::IndicatorState;
-use crate::model::settings::{Settle, UnitSettings};
-use crate::theme::Palette;
+use crate::model::{GeneralView, IndicatorState, Settle, Sheet, Side, UnitSettings};
 
 pub fn backups_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
     title_ui(ui, "Backups");
@@ -18,7 +15,7 @@ pub fn backups_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
         "Before every write, save, restore of defaults and firmware change the settings are kept here, newest first. \
          Restoring one makes its values changes, to be looked at and written.",
     );
-    ui.label(RichText::new(format!("Kept in {folder}")).color(Palette::of(ui).weak_text));
+    ui.weak(format!("Kept in {folder}"));
     if general.settings.backups().is_empty() {
         indicator_ui(
             ui,
@@ -119,7 +116,7 @@ pub fn unfinished_ui(ui: &mut Ui, general: &GeneralView<'_>) -> Vec<Offer> {
 fn lists_ui(ui: &mut Ui, unit: &UnitSettings, aftermath: &Aftermath) {
     for (title, list) in aftermath.lists() {
         ui.add_space(4.0);
-        ui.label(RichText::new(format!("{title} ({})", list.len())).strong());
+        ui.strong(format!("{title} ({})", list.len()));
         Grid::new((title, aftermath.begun.as_str())).num_columns(4).spacing([16.0, 3.0]).show(ui, |ui| {
             for held in list {
                 held_ui(ui, unit, held);
@@ -130,12 +127,11 @@ fn lists_ui(ui: &mut Ui, unit: &UnitSettings, aftermath: &Aftermath) {
 
 fn held_ui(ui: &mut Ui, unit: &UnitSettings, held: &Held) {
     let Some(row) = unit.table().row(&held.key) else { return };
-    let weak = Palette::of(ui).weak_text;
     let text = |value: Option<_>| value.map_or_else(|| "not known".to_owned(), |value| row.format(value));
     ui.label(row.title());
-    let now = ui.label(RichText::new(text(held.now)).strong());
+    let now = ui.strong(text(held.now));
     now.widget_info(|| WidgetInfo::labeled(Role::Label, true, held.sentence(row)));
-    ui.label(RichText::new(format!("old {}", text(held.old))).color(weak));
-    ui.label(RichText::new(format!("new {}", text(held.new.or(held.old)))).color(weak));
+    ui.weak(format!("old {}", text(held.old)));
+    ui.weak(format!("new {}", text(held.new.or(held.old))));
     ui.end_row();
 }

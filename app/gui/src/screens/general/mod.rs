@@ -7,9 +7,7 @@ use egui::{Align, Layout, Ui, vec2};
 
 use super::{face, not_connected_text, nothing_ui};
 use crate::command::{Command, Commands};
-use crate::model::Model;
-use crate::model::general::Section;
-use crate::model::settings::SettingsAction;
+use crate::model::{Model, Section, SettingsAction};
 
 mod compare;
 pub(crate) mod editor;
@@ -52,7 +50,7 @@ pub fn framed_ui(
     }
     head::head_ui(ui, general, family, commands);
     ui.add_space(4.0);
-    match general.sheet().is_some() {
+    match general.sheet.is_some() {
         true => sheet::sheet_ui(ui, general, stream, family.words(), commands),
         false => list_ui(ui, model, commands),
     }

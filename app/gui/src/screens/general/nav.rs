@@ -6,7 +6,7 @@ use egui::{Align, Button, ComboBox, Layout, Response, RichText, Role, ScrollArea
 use super::OwnSection;
 use crate::model::general::{GeneralView, Section, sections};
 use crate::model::settings::UnitSettings;
-use crate::widgets::heading::heading_ui;
+use crate::widgets::heading_ui;
 
 /// Room that the scroll bar may take.
 const BAR_WIDTH: f32 = 10.0;
@@ -63,7 +63,7 @@ fn entries_ui(ui: &mut Ui, general: &GeneralView<'_>, own: &[OwnSection]) -> Opt
             let mark = mark_of(unit, *section, function.as_deref());
             let is_current = current == Some(*section);
             let response = section_ui(ui, name, function.as_deref(), mark, is_current);
-            if is_current && general.is_seeking() {
+            if is_current && general.sought.is_some() {
                 response.scroll_to_me(None);
             }
             if response.clicked() {

@@ -4,9 +4,8 @@ use egui::{Button, Ui, vec2};
 
 use super::sheet_parts::{Act, Offer, indicator_ui, text_ui, title_ui};
 use crate::frame::FRAME_INTERVAL;
-use crate::model::general::{GeneralView, Purpose, Reported};
-use crate::model::indicator::IndicatorState;
-use crate::model::settings::UnitSettings;
+use crate::model::general::{Purpose, Reported};
+use crate::model::{GeneralView, IndicatorState, UnitSettings};
 use crate::widgets::text_field::text_field_ui;
 
 pub fn open_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
@@ -16,7 +15,7 @@ pub fn open_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
         "Reads a profile file and shows it beside the controller. Nothing is written; you choose what to take over.",
     );
     path_ui(ui, general, Purpose::Open);
-    let can_be_corrected = told_ui(ui, general.profiles.reported());
+    let can_be_corrected = told_ui(ui, &general.profiles.reported);
     let has_path = !general.profiles.path.trim().is_empty();
     let mut acts = vec![("Open", Act::OpenProfile { mending: false }, has_path)];
     if can_be_corrected {
@@ -39,7 +38,7 @@ pub fn save_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
     } else {
         general.profiles.with_edits = false;
     }
-    told_ui(ui, general.profiles.reported());
+    told_ui(ui, &general.profiles.reported);
     let is_read = general.unit().is_some_and(UnitSettings::is_read);
     if !is_read {
         indicator_ui(

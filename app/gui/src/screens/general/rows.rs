@@ -4,13 +4,10 @@ use brushwork_link::settings::Row;
 use egui::{Align, Button, Label, Layout, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 
 use super::editor;
-use crate::model::general::{GeneralView, Section};
-use crate::model::indicator::IndicatorState;
-use crate::model::settings::UnitSettings;
+use crate::model::{GeneralView, IndicatorState, Section, UnitSettings};
 use crate::screens::face::Face;
 use crate::theme::Palette;
-use crate::widgets::heading::heading_ui;
-use crate::widgets::readout::NO_VALUE;
+use crate::widgets::{NO_VALUE, heading_ui};
 
 pub const HEIGHT: f32 = 28.0;
 pub const MARK_WIDTH: f32 = 14.0;
@@ -94,7 +91,7 @@ pub fn list_ui(
     extra: Extra<'_>,
 ) {
     let is_filtered = general.is_filtered();
-    let sought = general.take_sought();
+    let sought = general.sought.take();
     let mut explained = None;
     let Some(unit) = general.unit_mut() else { return };
     let mut section = None;
@@ -219,8 +216,7 @@ fn text_ui(ui: &mut Ui, text: &str, spoken: &str, width: f32, is_weak: bool) {
 fn locked_ui(ui: &mut Ui, row: &Row, reason: &str) {
     let (rect, response) = ui.allocate_exact_size(vec2(REVERT_WIDTH, HEIGHT), Sense::hover());
     let font = egui::TextStyle::Small.resolve(ui.style());
-    let color = Palette::of(ui).weak_text;
-    ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, "locked", font, color);
+    ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, "locked", font, Palette::of(ui).weak_text);
     let spoken = format!("{} is locked: {reason}", row.title());
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
     response.on_hover_text(reason);

@@ -9,10 +9,7 @@ use super::sheet_parts::{Act, Offer, differences_ui, indicator_ui, text_ui, titl
 use super::{compare, kept, profile};
 use crate::command::{Command, Commands};
 use crate::family::SettingsWords;
-use crate::model::general::{GeneralView, Sheet, Take};
-use crate::model::indicator::IndicatorState;
-use crate::model::settings::{Saved, SettingsAction, UnitSettings};
-use crate::theme::Palette;
+use crate::model::{GeneralView, IndicatorState, Saved, SettingsAction, Sheet, Take, UnitSettings};
 use brushwork_core::keep::WearLevel;
 
 /// Room for the buttons below the text.
@@ -26,7 +23,7 @@ pub fn sheet_ui(
     commands: &mut Commands,
 ) {
     general.follow_dialog();
-    let Some(sheet) = general.sheet().cloned() else { return };
+    let Some(sheet) = general.sheet.clone() else { return };
     let height = (ui.available_height() - BUTTONS_HEIGHT).max(60.0);
     let offers = ui.scope(|ui| {
         ui.set_height(height);
@@ -66,7 +63,7 @@ fn content_ui(
 }
 
 fn buttons_ui(ui: &mut Ui, general: &mut GeneralView<'_>, offers: &[Offer], commands: &mut Commands) {
-    let focus = general.take_sheet_focus();
+    let focus = std::mem::take(&mut general.sheet_is_new);
     let mut chosen = None;
     let mut close = false;
     ui.horizontal(|ui| {
@@ -163,13 +160,13 @@ fn write_ui(ui: &mut Ui, unit: &UnitSettings, stream: Option<Stream>) -> Vec<Off
 
 /// The packets of a plan, for who wants to see them before they are sent.
 fn bytes_ui(ui: &mut Ui, unit: &UnitSettings, plan: &Plan) {
-    let address = unit.unit_address();
+    let address = unit.unit_address;
     let generation = unit.table().subject().generation;
     CollapsingHeader::new("Show the bytes").show(ui, |ui| {
         for step in &plan.steps {
             let bytes = step.bytes(address, generation).map_or_else(|error| error, |bytes| hex(&bytes));
             ui.label(format!("{}: {}", step.title(), step.words(address, generation)));
-            ui.label(RichText::new(bytes).monospace().color(Palette::of(ui).weak_text));
+            ui.label(RichText::new(bytes).monospace().weak());
         }
         if !plan.hidden.is_empty() {
             ui.label(format!(

@@ -3,9 +3,7 @@
 use brushwork_link::settings::Difference;
 use egui::{Grid, Label, RichText, Ui, vec2};
 
-use crate::model::indicator::IndicatorState;
-use crate::model::settings::{SettingsAction, Settle, UnitSettings};
-use crate::theme::Palette;
+use crate::model::{IndicatorState, SettingsAction, Settle, UnitSettings};
 
 /// What a button of a sheet does.
 #[derive(Clone, Copy, Debug)]
@@ -32,24 +30,22 @@ pub fn text_ui(ui: &mut Ui, text: &str) {
 
 pub fn indicator_ui(ui: &mut Ui, state: IndicatorState, text: &str) {
     ui.horizontal_top(|ui| {
-        let (rect, _) = ui.allocate_exact_size(vec2(18.0, 18.0), egui::Sense::hover());
-        state.paint(ui, rect.center(), 6.0);
+        state.ui(ui, vec2(18.0, 18.0), 6.0);
         ui.add(Label::new(text).wrap());
     });
 }
 
 /// Old and new of each setting, with units.
 pub fn differences_ui(ui: &mut Ui, unit: &UnitSettings, differences: impl Iterator<Item = Difference>) {
-    let weak = Palette::of(ui).weak_text;
     Grid::new("differences").num_columns(4).spacing([16.0, 3.0]).show(ui, |ui| {
         for difference in differences {
             let Some(row) = unit.table().row(&difference.key) else { continue };
             let text =
                 |value: Option<_>| value.map_or_else(|| "not known".to_owned(), |value| row.format(value));
             ui.label(row.title());
-            ui.label(RichText::new(text(difference.left)).color(weak));
+            ui.weak(text(difference.left));
             ui.label("->");
-            let new = ui.label(RichText::new(text(difference.right)).strong());
+            let new = ui.strong(text(difference.right));
             new.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, difference.describe(row)));
             ui.end_row();
         }

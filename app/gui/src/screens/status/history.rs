@@ -1,10 +1,9 @@
 //! What happened since the connection: counts first, then every event, the newest on top.
 
-use egui::{Align, Label, Layout, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
+use egui::{Align, Label, Layout, RichText, Role, ScrollArea, Ui, WidgetInfo, vec2};
 
 use crate::model::history::{Entry, History, clock_text};
-use crate::theme;
-use crate::theme::Palette;
+use crate::theme::{self};
 use crate::widgets::heading::heading_ui;
 
 /// The list is at least this high, however small the window.
@@ -18,12 +17,11 @@ pub fn history_ui(ui: &mut Ui, history: &mut History, height: f32) {
     let mut clear = false;
     ui.horizontal(|ui| {
         heading_ui(ui, "Event history");
-        let weak = Palette::of(ui).weak_text;
         let connected = match history.connected_for() {
             Some(time) => format!("connected for {}", clock_text(time)),
             None => "the link has ended".to_owned(),
         };
-        ui.label(RichText::new(connected).color(weak));
+        ui.weak(connected);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let response = ui.add_enabled(!history.is_empty(), egui::Button::new("Clear history"));
             clear = response
@@ -35,7 +33,7 @@ pub fn history_ui(ui: &mut Ui, history: &mut History, height: f32) {
     if history.is_empty() {
         let hint = "Nothing has happened since the list was cleared. Conditions that come and go, stops, disarmings and losses \
                     are listed here.";
-        ui.label(RichText::new(hint).color(Palette::of(ui).weak_text));
+        ui.weak(hint);
     }
     let list_height = (bottom - ui.cursor().top() - 4.0).max(4.0 * ROW_HEIGHT);
     ui.spacing_mut().item_spacing.y = 2.0;
@@ -58,13 +56,12 @@ fn counts_ui(ui: &mut Ui, history: &History) {
     }
     ui.horizontal_wrapped(|ui| {
         for (state, name, count) in history.counts() {
-            let (rect, _) = ui.allocate_exact_size(vec2(14.0, ROW_HEIGHT), Sense::hover());
-            state.paint(ui, rect.center(), 5.0);
+            state.ui(ui, vec2(14.0, ROW_HEIGHT), 5.0);
             ui.label(format!("{name} ×{count}"));
             ui.add_space(6.0);
         }
-        if history.dropped() > 0 {
-            ui.label(format!("{} older events are no longer listed", history.dropped()));
+        if history.dropped > 0 {
+            ui.label(format!("{} older events are no longer listed", history.dropped));
         }
     });
 }
@@ -74,16 +71,14 @@ fn entry_ui(ui: &mut Ui, entry: &Entry) {
         ui.set_height(ROW_HEIGHT);
         let time = clock_text(entry.at);
         let font = theme::figures().resolve(ui.style());
-        let color = Palette::of(ui).weak_text;
         ui.allocate_ui_with_layout(
             vec2(TIME_WIDTH, ROW_HEIGHT),
             Layout::right_to_left(Align::Center),
             |ui| {
-                ui.label(RichText::new(&time).font(font).color(color));
+                ui.label(RichText::new(&time).font(font).weak());
             },
         );
-        let (rect, _) = ui.allocate_exact_size(vec2(18.0, ROW_HEIGHT), Sense::hover());
-        entry.kind.state().paint(ui, rect.center(), 5.0);
+        entry.kind.state().ui(ui, vec2(18.0, ROW_HEIGHT), 5.0);
         let unit = if entry.place.is_empty() { String::new() } else { format!("{}  ", entry.place) };
         let spoken = format!("{time} {unit}{}", entry.text);
         let text = ui.add(Label::new(format!("{unit}{}", entry.text)).truncate());

@@ -2,12 +2,8 @@
 
 use egui::{RichText, Ui};
 
-use crate::model::connection::Connection;
-use crate::model::history::clock_text;
-use crate::model::indicator::IndicatorState;
-use crate::theme::Palette;
-use crate::widgets::heading::heading_ui;
-use crate::widgets::indicator;
+use crate::model::{Connection, IndicatorState, clock_text};
+use crate::widgets::{heading_ui, indicator};
 
 pub fn indicators_ui(ui: &mut Ui, connection: &Connection, columns: usize) {
     ui.columns(columns, |ui| {
@@ -25,7 +21,7 @@ pub fn indicators_ui(ui: &mut Ui, connection: &Connection, columns: usize) {
         }
     });
     if let Some(note) = note(connection) {
-        ui.label(RichText::new(note).small().color(Palette::of(ui).weak_text));
+        ui.label(RichText::new(note).small().weak());
     }
 }
 
@@ -43,13 +39,11 @@ pub fn active_ui(ui: &mut Ui, connection: &Connection) {
         .map(|report| connection.family().active(report, connection.link.identity()))
         .unwrap_or_default();
     if active.is_empty() {
-        let color = Palette::of(ui).weak_text;
-        ui.label(RichText::new("Nothing: neither warning nor error.").color(color));
+        ui.weak("Nothing: neither warning nor error.");
     }
     for indicator in active {
         ui.horizontal(|ui| {
-            let (rect, _) = ui.allocate_exact_size(egui::vec2(18.0, 18.0), egui::Sense::hover());
-            indicator.state.paint(ui, rect.center(), 6.0);
+            indicator.state.ui(ui, egui::vec2(18.0, 18.0), 6.0);
             ui.label(format!("{} ({})", indicator.title, indicator.state.word()));
         });
     }

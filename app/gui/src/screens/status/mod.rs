@@ -5,8 +5,7 @@ use egui::{Align, Layout, ScrollArea, Ui};
 
 use super::{face, not_connected_text, nothing_ui, title_ui};
 use crate::command::Commands;
-use crate::model::Model;
-use crate::model::indicator::IndicatorState;
+use crate::model::{IndicatorState, Model};
 
 mod history;
 mod indicators;

@@ -1,11 +1,9 @@
 //! Who the unit is, and how its link does.
 
-use brushwork_link::device::StatusReport;
-use egui::{Grid, Label, RichText, Ui};
+use egui::{Grid, Label, Ui};
 
 use crate::family::Ability;
 use crate::model::connection::Connection;
-use crate::theme::Palette;
 use crate::widgets::heading::heading_ui;
 
 pub fn unit_ui(ui: &mut Ui, connection: &Connection) {
@@ -26,7 +24,10 @@ pub fn unit_ui(ui: &mut Ui, connection: &Connection) {
         ("Firmware", format!("{}, {}", or_not_reported(&identity.firmware), identity.generation)),
         ("Address", format!("{}{}", identity.place(), addresses(&identity.also_answers))),
         ("Port", port),
-        ("Status word", connection.link.status.as_ref().map_or(String::new(), word_text)),
+        (
+            "Status word",
+            connection.link.status.map_or(String::new(), |report| format!("0x{:04X}", report.word)),
+        ),
         (
             "Traffic",
             format!("{:.1} kbit/s, {:.0} requests/s", figures.kbit_per_s, figures.transactions_per_s),
@@ -48,10 +49,9 @@ pub fn unit_ui(ui: &mut Ui, connection: &Connection) {
         ),
     ];
     let own = connection.family().unit_row(identity);
-    let weak = Palette::of(ui).weak_text;
     Grid::new("unit").num_columns(2).spacing([14.0, 3.0]).show(ui, |ui| {
         for (label, value) in rows.into_iter().chain(own) {
-            ui.label(RichText::new(label).color(weak));
+            ui.weak(label);
             ui.add(Label::new(value).truncate());
             ui.end_row();
         }
@@ -60,8 +60,4 @@ pub fn unit_ui(ui: &mut Ui, connection: &Connection) {
 
 fn or_not_reported(text: &str) -> &str {
     if text.is_empty() { "not reported" } else { text }
-}
-
-fn word_text(report: &StatusReport) -> String {
-    format!("0x{:04X}", report.word)
 }

@@ -101,7 +101,7 @@ pub fn play(bench: &mut Bench, row: &Row, scene: &str) {
         "mcl_download" => {
             bench.pass_ms(3000);
             assert!(
-                bench.model().front.script.on_board().is_some(),
+                bench.model().front.script.on_board.is_some(),
                 "{:?}",
                 bench.model().messages.past().collect::<Vec<_>>()
             );

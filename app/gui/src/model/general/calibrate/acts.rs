@@ -6,18 +6,12 @@ use brushwork_link::settings::{SettingsImage, WriteReport};
 use super::{Phase, Run, closed, left_open, want_back};
 use crate::family;
 use crate::model::general::calibration::{Calibration, CalibrationStage};
-use crate::model::general::{General, GeneralView};
-use crate::model::message::Gravity;
-use crate::model::settings::{SettingsAction, Summary};
+use crate::model::{General, GeneralView, Gravity, SettingsAction, Summary};
 
 impl General {
-    pub fn calibration(&self) -> Option<&Run> {
-        self.calibration.as_ref()
-    }
-
     /// Whether a calibration or a test needs the settings to be left as they are.
     pub fn holds_settings(&self) -> bool {
-        self.calibration.is_some() || self.clamp.is_running()
+        self.calibration.is_some() || self.clamp.job.is_running()
     }
 
     /// Takes in the readings of a sweep.
@@ -32,7 +26,7 @@ impl General {
     pub fn take_calibrated(&mut self) {
         let Some(run) = &mut self.calibration else { return };
         let Phase::Moving(calibration) = &mut run.phase else { return };
-        let refused = match calibration.stage() {
+        let refused = match calibration.stage {
             CalibrationStage::Ends => calibration.take_ends().err(),
             CalibrationStage::Center => match calibration.take_center() {
                 Ok(found) => {

@@ -2,16 +2,14 @@
 
 use std::time::Duration;
 
-use brushwork_link::device::{ArmScope, Event, QueuedJob};
+use brushwork_link::device::{ArmScope, QueuedJob};
 use brushwork_link::settings::{Group, SettingValue};
 use crossbeam_channel::bounded;
 
 use super::{ClampTest, Running};
 use crate::model::general::section::Section;
-use crate::model::general::{General, GeneralView};
-use crate::model::link::Effect;
-use brushwork_core::motion::clamp;
-use brushwork_core::motion::clamp::{STEPS, Task};
+use crate::model::{General, GeneralView};
+use brushwork_core::motion::clamp::{self, STEPS, Task};
 
 impl General {
     /// What can be armed here: the clamp test on its own page.
@@ -20,23 +18,9 @@ impl General {
         is_open.then_some(ArmScope::ClampTest)
     }
 
-    /// The job was not taken.
-    pub fn clamp_test_not_begun(&mut self) {
-        self.clamp.forget_job();
-    }
-
-    /// Takes in an event of the clamp test.
-    pub fn take_clamp_test(&mut self, event: Event) -> Vec<Effect> {
-        self.clamp.take(event)
-    }
-
-    pub(in crate::model::general) fn clamp_test_lost(&mut self) {
-        self.clamp.forget_job();
-    }
-
     /// What was found says nothing of another unit.
     pub(in crate::model::general) fn forget_clamp_test(&mut self) {
-        if !self.clamp.is_running() {
+        if !self.clamp.job.is_running() {
             self.clamp = ClampTest::default();
         }
     }

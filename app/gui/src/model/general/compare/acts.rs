@@ -16,7 +16,7 @@ impl GeneralView<'_> {
                 Some(known) => format!("EEPROM as known since {}", known.date_text()),
                 None => "EEPROM (not known)".to_owned(),
             },
-            Side::Profile => match self.profiles.opened() {
+            Side::Profile => match &self.profiles.opened {
                 Some(opened) => format!("Profile {}", opened.name),
                 None => "Profile (none is open)".to_owned(),
             },
@@ -100,7 +100,7 @@ impl GeneralView<'_> {
                 ),
             },
             Side::Profile => {
-                let opened = self.profiles.opened();
+                let opened = self.profiles.opened.as_ref();
                 opened.map(|opened| plain(&opened.profile.settings)).ok_or("No profile is open.".to_owned())
             }
             Side::Default => {
@@ -151,7 +151,7 @@ impl GeneralView<'_> {
         let unit = self.unit()?;
         let mut image = unit.ram()?.clone();
         image.merge(unit.edits());
-        Some(copy_motor(unit.table(), &image, self.motor_to_copy(), unit.is_simulated()))
+        Some(copy_motor(unit.table(), &image, self.motor_to_copy(), unit.is_simulated))
     }
 
     /// The motor that is copied: 1 or 2.

@@ -1,8 +1,7 @@
 //! What the settings of a unit have to do with what is kept on this computer.
 
-use brushwork_link::device::Identity;
-use brushwork_link::settings::{Act, Aftermath, Journal, Keeper, Profile};
-use brushwork_link::transport::PortInfo;
+use brushwork_link::settings::{Act, Aftermath, Journal};
+use brushwork_link::{Identity, Keeper, PortInfo, Profile};
 
 use super::Came;
 use crate::model::settings::unit_key::UnitKey;
