@@ -5,6 +5,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use brushwork_canopen::adapter::Form;
+use brushwork_core::session::line::SimulatedLine;
+use brushwork_family::Started;
 use brushwork_link::device::{
     ArmScope, DeviceHandle, DeviceLoop, DeviceOptions, Drive, DriveCommand, Event, Job, JobEnding, JobTicket,
     Request, Step, StopReport,
@@ -81,6 +83,19 @@ impl VirtualLink {
     /// Moves waiting in a unit's buffers, as command 47 tells them.
     pub fn buffers(&self, index: usize) -> [u8; 2] {
         self.unit(index, |unit| Motor::BOTH.map(|motor| unit.channel(motor).buffer_length()))
+    }
+}
+
+impl VirtualLink<SimulatedLine> {
+    /// A loop on the simulated units of a family, at the stream that they are reached by.
+    pub fn to_simulated(started: Started, options: DeviceOptions) -> Self {
+        Self::made(
+            SimulatedLine::new(started.machine),
+            started.index,
+            Vec::new(),
+            started.seed,
+            |line, clock| DeviceLoop::new(line, clock, options),
+        )
     }
 }
 

@@ -8,6 +8,7 @@ mod device_adversary;
 mod device_safety;
 mod device_thread;
 mod echo;
+mod every_family;
 mod firmware;
 mod foreign_clients;
 mod killed_clients;
