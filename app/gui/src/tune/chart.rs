@@ -170,7 +170,15 @@ fn plot<'a>(name: &str, (x, y): (Axis, Axis), palette: &Palette) -> Plot<'a> {
         // The last one tells what it is.
         let is_last = tick.value + 0.999 * tick.step_size > *shown.end();
         let unit = if x.unit.is_empty() { x.name } else { x.unit };
-        if is_last { format!("{} {unit}", x.figure(tick)) } else { x.figure(tick) }
+        let figure = x.figure(tick);
+        if is_last {
+            format!("{figure} {unit}")
+        } else if tick.value < *shown.start() + 0.001 * tick.step_size {
+            // In the corner it stands to the right of the axis, since the lowest figure of the other axis is at its left.
+            format!("{figure:>width$}", width = 2 * figure.len() + 1)
+        } else {
+            figure
+        }
     };
     let plot = Plot::new(name)
         .sense(Sense::hover())
