@@ -45,6 +45,7 @@ mod strip;
 mod tabs;
 mod threads;
 mod toolbar;
+mod typeface;
 mod typing;
 mod view;
 

@@ -1,18 +1,12 @@
 //! A program on paper: pages of PDF with line numbers, the colours of the words, and a head with name and page.
 
 use brushwork_script::mcl::index::{Class, classes};
-use egui::{Color32, FontDefinitions};
-use krilla::Document;
-use krilla::color::rgb;
-use krilla::geom::Point;
-use krilla::num::NormalizedF32;
-use krilla::page::PageSettings;
-use krilla::paint::Fill;
-use krilla::surface::Surface;
-use krilla::text::{Font, TextDirection};
+use egui::Color32;
+use pdf_writer::{Content, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
 
 use super::moves::TAB_CELLS;
 use super::paint::color_of;
+use super::typeface::{FontFace, Typeface};
 use crate::theme::Palette;
 use brushwork_core::keep::today;
 
@@ -23,8 +17,8 @@ const SIZE: f32 = 8.5;
 const ROW: f32 = 11.5;
 /// Width of a letter of the fixed font, in sizes.
 const ADVANCE: f32 = 0.602;
-/// The family and the name of the window's fixed font.
-const FONT: &str = "Hack";
+/// The font's name within the file.
+const FONT: Name<'static> = Name(b"F");
 
 /// A stretch of a row in one colour: the cell where it begins, and its letters.
 type Piece = (usize, String, Color32);
@@ -40,7 +34,8 @@ struct Row {
 /// # Errors
 /// What the writer of the file says, without a full stop.
 pub fn pdf(title: &str, text: &str) -> Result<Vec<u8>, String> {
-    let font = font().ok_or("the window's fixed font is missing")?;
+    let face = FontFace::of_the_window().ok_or("the window's fixed font is missing")?;
+    let mut typeface = face.typeface()?;
     let digits = text.lines().count().max(1).to_string().len();
     let left = MARGIN + (digits + 2) as f32 * SIZE * ADVANCE;
     let cells = ((PAGE.0 - MARGIN - left) / (SIZE * ADVANCE)) as usize;
@@ -49,27 +44,30 @@ pub fn pdf(title: &str, text: &str) -> Result<Vec<u8>, String> {
     let per_page = ((PAGE.1 - 2.0 * MARGIN - 2.0 * ROW) / ROW) as usize;
     let pages = rows.len().div_ceil(per_page);
     let date = today();
-    let mut document = Document::new();
+
+    let mut numbers = Ref::new(1);
+    let [catalog, tree, info, font] = [(); 4].map(|()| numbers.bump());
+    let mut pdf = Pdf::new();
+    let mut kids = Vec::new();
     for (index, rows) in rows.chunks(per_page).enumerate() {
-        let settings = PageSettings::from_wh(PAGE.0, PAGE.1).ok_or("the page has no size")?;
-        let mut page = document.start_page_with(settings);
-        let mut surface = page.surface();
-        let mut pen = Pen { surface: &mut surface, font: &font };
+        let mut pen = Pen { content: Content::new(), typeface: &mut typeface };
         pen.head(title, date.get(..10).unwrap_or(&date), index + 1, pages);
         for (row, contents) in rows.iter().enumerate() {
             pen.row(contents, left, digits, MARGIN + 3.0 * ROW + row as f32 * ROW);
         }
-        surface.finish();
-        page.finish();
+        let [page, contents] = [(); 2].map(|()| numbers.bump());
+        pdf.stream(contents, &pen.content.finish());
+        let mut written = pdf.page(page);
+        written.media_box(Rect::new(0.0, 0.0, PAGE.0, PAGE.1)).parent(tree).contents(contents);
+        written.resources().fonts().pair(FONT, font);
+        written.finish();
+        kids.push(page);
     }
-    document.finish().map_err(|error| format!("the pages could not be written ({error:?})"))
-}
-
-fn font() -> Option<Font> {
-    let fonts = FontDefinitions::default();
-    let data = fonts.font_data.get(FONT)?;
-    let bytes: &[u8] = (*data.font).as_ref();
-    Font::new(bytes.to_vec().into(), data.index)
+    pdf.pages(tree).count(i32::try_from(kids.len()).unwrap_or(i32::MAX)).kids(kids);
+    typeface.embed(&mut pdf, font, &mut numbers)?;
+    pdf.document_info(info).title(TextStr(title));
+    pdf.catalog(catalog).pages(tree);
+    Ok(pdf.finish())
 }
 
 /// A line as rows that fit the page.
@@ -108,16 +106,16 @@ fn rows_of(number: usize, line: &str, cells: usize) -> Vec<Row> {
 
 /// Writes on one page.
 struct Pen<'a, 'b> {
-    surface: &'a mut Surface<'b>,
-    font: &'a Font,
+    content: Content,
+    typeface: &'a mut Typeface<'b>,
 }
 
 impl Pen<'_, '_> {
+    /// A text whose first letter begins at `x` from the left and stands on a line at `y` from the top.
     fn text(&mut self, x: f32, y: f32, text: &str, color: Color32) {
-        let paint = rgb::Color::new(color.r(), color.g(), color.b()).into();
-        self.surface.set_fill(Some(Fill { paint, opacity: NormalizedF32::ONE, rule: Default::default() }));
-        let at = Point::from_xy(x, y);
-        self.surface.draw_text(at, self.font.clone(), SIZE, text, false, TextDirection::LeftToRight);
+        let [r, g, b, _] = color.to_normalized_gamma_f32();
+        self.content.begin_text().set_font(FONT, SIZE).set_fill_rgb(r, g, b).next_line(x, PAGE.1 - y);
+        self.content.show(Str(&self.typeface.glyphs(text))).end_text();
     }
 
     fn head(&mut self, title: &str, date: &str, page: usize, pages: usize) {
