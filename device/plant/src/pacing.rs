@@ -1,8 +1,8 @@
 //! Bytes at the baud rate: a wrapper that lets each byte of a machine take its time on the wire, both ways.
 //!
 //! It has no clock of its own: like any machine it is advanced, and it hands each byte on at the very moment at which its last
-//! bit is through. A reply leaves as one write when its last byte would have arrived at the host. The machine's own turnaround is
-//! the time between the last bit of a request and the first of its reply.
+//! bit is through, to the machine as to the host. The machine's own turnaround is the time between the last bit of a request and the
+//! first of its reply.
 
 use crate::machine::{Machine, StreamIndex};
 use crate::world::{WorldAction, WorldView};
@@ -29,8 +29,8 @@ pub struct Paced<M> {
 struct Line {
     /// Bytes on their way to the machine, each with the time its last bit arrives.
     requests: VecDeque<(Duration, u8)>,
-    /// Replies on their way to the host, each with the time its last bit arrives.
-    replies: VecDeque<(Duration, Vec<u8>)>,
+    /// Bytes on their way to the host, each with the time its last bit arrives.
+    replies: VecDeque<(Duration, u8)>,
     last_reply_byte_at: Duration,
 }
 
@@ -66,9 +66,11 @@ impl<M: Machine> Paced<M> {
             }
             let byte_time = byte_time(self.inner.bits_per_second(stream));
             while let Some(reply) = self.inner.take_output(stream) {
-                let starts = now.max(line.last_reply_byte_at);
-                line.last_reply_byte_at = starts + byte_time * reply.len() as u32;
-                line.replies.push_back((line.last_reply_byte_at, reply));
+                line.last_reply_byte_at = line.last_reply_byte_at.max(now);
+                for byte in reply {
+                    line.last_reply_byte_at += byte_time;
+                    line.replies.push_back((line.last_reply_byte_at, byte));
+                }
             }
         }
     }
@@ -122,7 +124,8 @@ impl<M: Machine> Machine for Paced<M> {
         }
         let now = self.inner.now();
         let replies = &mut self.lines[stream.index()].replies;
-        replies.pop_front_if(|(at, _)| *at <= now).map(|(_, reply)| reply)
+        let arrived = replies.partition_point(|(at, _)| *at <= now);
+        (arrived > 0).then(|| replies.drain(..arrived).map(|(_, byte)| byte).collect())
     }
 
     fn bits_per_second(&self, stream: StreamIndex) -> u32 {
