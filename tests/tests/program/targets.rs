@@ -2,7 +2,7 @@
 
 use brushwork_canopen::NodeId;
 use brushwork_canopen::adapter::Form;
-use brushwork_link::FamilyChoice;
+use brushwork_link::transport::target::LineOptions;
 use brushwork_link::transport::{ConnectTarget, Stream};
 
 /// What a text means.
@@ -12,7 +12,11 @@ fn parse(text: &str) -> Result<ConnectTarget, String> {
 }
 
 fn serial(path: &str, baud: u32, stream: Option<Stream>) -> ConnectTarget {
-    ConnectTarget::Serial { path: path.to_owned(), baud, stream, family: FamilyChoice::AUTO }
+    ConnectTarget::Serial {
+        path: path.to_owned(),
+        baud,
+        line: LineOptions { stream, ..LineOptions::default() },
+    }
 }
 
 fn can(adapter: ConnectTarget, node: Option<NodeId>, form: Form) -> ConnectTarget {
@@ -29,14 +33,13 @@ fn every_form_of_target_is_understood() {
         ("my,odd,link", serial("my,odd,link", 38_400, None)),
         (
             "tcp:127.0.0.1:5000",
-            ConnectTarget::Tcp { address: "127.0.0.1:5000".into(), stream: None, family: FamilyChoice::AUTO },
+            ConnectTarget::Tcp { address: "127.0.0.1:5000".into(), line: LineOptions::default() },
         ),
         (
             "TCP:[::1]:5000,stream=rs232",
             ConnectTarget::Tcp {
                 address: "[::1]:5000".into(),
-                stream: Some(Stream::Rs232),
-                family: FamilyChoice::AUTO,
+                line: LineOptions { stream: Some(Stream::Rs232), ..LineOptions::default() },
             },
         ),
         ("sim:mcp266,generation=4", ConnectTarget::Sim("mcp266,generation=4".into())),
@@ -48,11 +51,7 @@ fn every_form_of_target_is_understood() {
         (
             "CAN:tcp:localhost:4000,node=127",
             can(
-                ConnectTarget::Tcp {
-                    address: "localhost:4000".into(),
-                    stream: None,
-                    family: FamilyChoice::AUTO,
-                },
+                ConnectTarget::Tcp { address: "localhost:4000".into(), line: LineOptions::default() },
                 NodeId::new(127),
                 Form::Ascii,
             ),

@@ -87,12 +87,10 @@ impl LoaderPlace {
 
     fn look(&self) -> Result<Option<Box<dyn Transport>>, String> {
         let target = match &self.target {
-            ConnectTarget::Serial { baud, stream, family, .. } if self.changes_name => {
+            ConnectTarget::Serial { baud, line, .. } if self.changes_name => {
                 let ports = list_ports().map_err(|failure| failure.to_string())?;
                 match loader_port(&ports)? {
-                    Some(path) => {
-                        ConnectTarget::Serial { path, baud: *baud, stream: *stream, family: *family }
-                    }
+                    Some(path) => ConnectTarget::Serial { path, baud: *baud, line: *line },
                     None => return Ok(None),
                 }
             }

@@ -4,6 +4,7 @@ use super::connection::{Connection, ConnectionId, place_of};
 use super::simulated::Simulated;
 use crate::family::{self, Family};
 use brushwork_link::transport::TargetError;
+use brushwork_link::transport::target::LineOptions;
 use brushwork_link::{Addresses, ConnectTarget, Failure, FamilyChoice, PortInfo};
 
 /// The simulated controller that is always there.
@@ -209,7 +210,8 @@ impl Devices {
             Choice::Simulated => self.simulated_target().parse(),
             Choice::Port(name) => {
                 let stream = self.chosen_port().and_then(|port| port.stream);
-                Ok(ConnectTarget::Serial { path: name.clone(), baud: self.baud, stream, family: self.family })
+                let line = LineOptions { stream, family: self.family, ..LineOptions::default() };
+                Ok(ConnectTarget::Serial { path: name.clone(), baud: self.baud, line })
             }
             Choice::Connection(_) | Choice::Typed => {
                 let mut target = self.typed.parse()?;
@@ -221,10 +223,10 @@ impl Devices {
                     *baud = self.baud;
                 }
                 // What was typed behind the path goes before what is chosen below it.
-                if let ConnectTarget::Serial { family, .. } | ConnectTarget::Tcp { family, .. } = &mut target
-                    && *family == FamilyChoice::AUTO
+                if let ConnectTarget::Serial { line, .. } | ConnectTarget::Tcp { line, .. } = &mut target
+                    && line.family == FamilyChoice::AUTO
                 {
-                    *family = self.family;
+                    line.family = self.family;
                 }
                 Ok(target)
             }

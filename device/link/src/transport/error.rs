@@ -18,6 +18,12 @@ pub enum TargetError {
         /// What was given.
         given: String,
     },
+    /// A latency out of range.
+    #[error("\"{given}\" is no latency. Give how long replies may take, 1 to 10000 ms")]
+    Latency {
+        /// What was given.
+        given: String,
+    },
     /// A node id out of range.
     #[error("\"{given}\" is no node id. CANopen has 1 to 127")]
     Node {

@@ -6,6 +6,7 @@ mod available;
 mod byte_stream;
 pub mod channel;
 mod error;
+mod late;
 mod port_info;
 pub mod ports;
 mod refused;

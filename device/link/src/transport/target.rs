@@ -2,13 +2,14 @@
 //!
 //! `/dev/ttyACM0`, `COM3`, `tcp:host:port` and `sim:mcp266`; serial ports take options behind a comma:
 //! `/dev/ttyUSB0,baud=115200,stream=ttl1`, `COM4,family=mcp`. `can:` in front of a port or TCP address says that a CAN adapter is there:
-//! `can:/dev/ttyUSB0,node=3,form=binary`. Any other text is taken as the path of a serial port, so that
+//! `can:/dev/ttyUSB0,node=3,form=binary`. `latency=800` lets replies take 800 ms, as over a slow radio. Any other text is taken as the path of a serial port, so that
 //! links, pseudo-terminals and names this program has never heard of work too.
 
 pub use super::error::{OpenError, TargetError};
 pub use super::stream::Stream;
 
 use super::byte_stream::Transport;
+use super::late::Late;
 use super::serial::SerialTransport;
 use super::tcp::TcpTransport;
 use crate::family::{FamilyChoice, families};
@@ -16,9 +17,21 @@ use brushwork_canopen::NodeId;
 use brushwork_canopen::adapter::Form;
 use std::fmt;
 use std::str::FromStr;
+use std::time::Duration;
 
 /// Baud rate of an adapter for a CAN bus when none is given. Assumed: the makers' manuals name no common one.
 pub const DEFAULT_ADAPTER_BAUD: u32 = 115_200;
+
+/// What a user may say of a line beyond where it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LineOptions {
+    /// Which of the controller's streams it is wired to.
+    pub stream: Option<Stream>,
+    /// Which protocol family the controllers on it speak.
+    pub family: FamilyChoice,
+    /// How long replies may take beyond the time of their bytes, where that is more than what is found out without being told.
+    pub latency: Option<Duration>,
+}
 
 /// Where a controller is to be found.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -29,19 +42,15 @@ pub enum ConnectTarget {
         path: String,
         /// Baud rate; over USB the controller ignores it.
         baud: u32,
-        /// Which of the controller's streams the port is wired to, when the user said so.
-        stream: Option<Stream>,
-        /// Which protocol family the controllers on it speak.
-        family: FamilyChoice,
+        /// What else was said of the line.
+        line: LineOptions,
     },
     /// A TCP server.
     Tcp {
         /// "host:port".
         address: String,
-        /// Which of the controller's streams the server is wired to, when the user said so.
-        stream: Option<Stream>,
-        /// Which protocol family the controllers on it speak.
-        family: FamilyChoice,
+        /// What else was said of the line.
+        line: LineOptions,
     },
     /// A CAN bus behind an adapter on a serial port or a TCP server.
     Can {
@@ -59,34 +68,40 @@ pub enum ConnectTarget {
 impl ConnectTarget {
     /// Opens a serial port or a TCP connection. A simulated controller is started by the application.
     pub fn open(&self) -> Result<Box<dyn Transport>, OpenError> {
-        match self {
-            Self::Serial { path, baud, .. } => Ok(Box::new(SerialTransport::open(path, *baud)?)),
+        let transport: Box<dyn Transport> = match self {
+            Self::Serial { path, baud, .. } => Box::new(SerialTransport::open(path, *baud)?),
             Self::Tcp { address, .. } => match TcpTransport::connect(address) {
-                Ok(transport) => Ok(Box::new(transport)),
-                Err(source) => Err(OpenError::Tcp { address: address.clone(), source }),
+                Ok(transport) => Box::new(transport),
+                Err(source) => return Err(OpenError::Tcp { address: address.clone(), source }),
             },
-            Self::Can { adapter, .. } => adapter.open(),
-            Self::Sim(_) => Err(OpenError::SimulatedElsewhere),
+            Self::Can { adapter, .. } => return adapter.open(),
+            Self::Sim(_) => return Err(OpenError::SimulatedElsewhere),
+        };
+        Ok(match self.line().latency {
+            Some(latency) => Box::new(Late::new(transport, latency)),
+            None => transport,
+        })
+    }
+
+    /// What the user said of the line, of the adapter's where there is one.
+    fn line(&self) -> LineOptions {
+        match self {
+            Self::Serial { line, .. } | Self::Tcp { line, .. } => *line,
+            Self::Can { adapter, .. } => adapter.line(),
+            Self::Sim(_) => LineOptions::default(),
         }
     }
 
     /// The protocol family the user named.
     #[must_use]
     pub fn family(&self) -> FamilyChoice {
-        match self {
-            Self::Serial { family, .. } | Self::Tcp { family, .. } => *family,
-            Self::Can { .. } => bus_family(),
-            Self::Sim(_) => FamilyChoice::AUTO,
-        }
+        if matches!(self, Self::Can { .. }) { bus_family() } else { self.line().family }
     }
 
     /// The stream the user named.
     #[must_use]
     pub fn stream(&self) -> Option<Stream> {
-        match self {
-            Self::Serial { stream, .. } | Self::Tcp { stream, .. } => *stream,
-            Self::Can { .. } | Self::Sim(_) => None,
-        }
+        if matches!(self, Self::Can { .. }) { None } else { self.line().stream }
     }
 }
 
@@ -106,12 +121,11 @@ impl FromStr for ConnectTarget {
         }
         let (place, options) = split_options(text)?;
         match strip_scheme(place, "tcp:") {
-            Some(address) => parse_tcp(address, &options),
+            Some(address) => parse_tcp(address, options.line),
             None => Ok(Self::Serial {
                 path: place.to_owned(),
-                baud: options.baud.unwrap_or_else(|| options.family.default_baud()),
-                stream: options.stream,
-                family: options.family,
+                baud: options.baud.unwrap_or_else(|| options.line.family.default_baud()),
+                line: options.line,
             }),
         }
     }
@@ -120,9 +134,9 @@ impl FromStr for ConnectTarget {
 impl fmt::Display for ConnectTarget {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Serial { path, baud, family, .. } => {
+            Self::Serial { path, baud, line } => {
                 f.write_str(path)?;
-                if *baud != family.default_baud() {
+                if *baud != line.family.default_baud() {
                     write!(f, ",baud={baud}")?;
                 }
             }
@@ -149,6 +163,7 @@ impl fmt::Display for ConnectTarget {
             Self::Sim(what) => write!(f, "sim:{what}")?,
         }
         self.stream().map_or(Ok(()), |stream| write!(f, ",stream={}", stream.key()))?;
+        self.line().latency.map_or(Ok(()), |latency| write!(f, ",latency={}", latency.as_millis()))?;
         match self.family() {
             FamilyChoice::AUTO => Ok(()),
             _ if matches!(self, Self::Can { .. }) => Ok(()),
@@ -166,6 +181,7 @@ fn bus_family() -> FamilyChoice {
 /// Reads what stands behind "can:".
 fn parse_can(text: &str) -> Result<ConnectTarget, TargetError> {
     let (mut node, mut form, mut baud) = (None, Form::default(), DEFAULT_ADAPTER_BAUD);
+    let mut line = LineOptions::default();
     let mut place = text;
     while let Some((before, last)) = place.rsplit_once(',') {
         if let Some(given) = last.strip_prefix("node=") {
@@ -174,6 +190,8 @@ fn parse_can(text: &str) -> Result<ConnectTarget, TargetError> {
             form = Form::from_key(given).ok_or_else(|| TargetError::Form { given: given.to_owned() })?;
         } else if let Some(given) = last.strip_prefix("baud=") {
             baud = parse_baud(given)?;
+        } else if let Some(given) = last.strip_prefix("latency=") {
+            line.latency = Some(parse_latency(given)?);
         } else {
             break;
         }
@@ -183,10 +201,8 @@ fn parse_can(text: &str) -> Result<ConnectTarget, TargetError> {
         return Err(TargetError::Empty);
     }
     let adapter = match strip_scheme(place, "tcp:") {
-        Some(address) => parse_tcp(address, &Options::default())?,
-        None => {
-            ConnectTarget::Serial { path: place.to_owned(), baud, stream: None, family: FamilyChoice::AUTO }
-        }
+        Some(address) => parse_tcp(address, line)?,
+        None => ConnectTarget::Serial { path: place.to_owned(), baud, line },
     };
     Ok(ConnectTarget::Can { adapter: Box::new(adapter), node, form })
 }
@@ -200,8 +216,7 @@ fn parse_node(given: &str) -> Result<NodeId, TargetError> {
 #[derive(Default)]
 struct Options {
     baud: Option<u32>,
-    stream: Option<Stream>,
-    family: FamilyChoice,
+    line: LineOptions,
 }
 
 /// Takes known options off the end; a comma before anything else belongs to the path.
@@ -212,9 +227,11 @@ fn split_options(text: &str) -> Result<(&str, Options), TargetError> {
         if let Some(given) = last.strip_prefix("baud=") {
             options.baud = Some(parse_baud(given)?);
         } else if let Some(given) = last.strip_prefix("stream=") {
-            options.stream = Some(given.parse()?);
+            options.line.stream = Some(given.parse()?);
         } else if let Some(given) = last.strip_prefix("family=") {
-            options.family = given.parse().map_err(|why| TargetError::Family { why })?;
+            options.line.family = given.parse().map_err(|why| TargetError::Family { why })?;
+        } else if let Some(given) = last.strip_prefix("latency=") {
+            options.line.latency = Some(parse_latency(given)?);
         } else {
             break;
         }
@@ -231,14 +248,19 @@ fn parse_baud(given: &str) -> Result<u32, TargetError> {
         .ok_or_else(|| TargetError::Baud { given: given.to_owned() })
 }
 
-fn parse_tcp(address: &str, options: &Options) -> Result<ConnectTarget, TargetError> {
+fn parse_latency(given: &str) -> Result<Duration, TargetError> {
+    let latency_ms = given.parse().ok().filter(|latency_ms| (1..=10_000).contains(latency_ms));
+    latency_ms.map(Duration::from_millis).ok_or_else(|| TargetError::Latency { given: given.to_owned() })
+}
+
+fn parse_tcp(address: &str, line: LineOptions) -> Result<ConnectTarget, TargetError> {
     let named = address
         .rsplit_once(':')
         .is_some_and(|(host, port)| !host.is_empty() && port.parse::<u16>().is_ok_and(|port| port != 0));
     if !named {
         return Err(TargetError::TcpAddress { given: address.to_owned() });
     }
-    Ok(ConnectTarget::Tcp { address: address.to_owned(), stream: options.stream, family: options.family })
+    Ok(ConnectTarget::Tcp { address: address.to_owned(), line })
 }
 
 /// Strips "tcp:" or "sim:" in either case. One letter before the colon would be a Windows drive, so the
