@@ -27,13 +27,13 @@ struct Case {
 }
 
 impl Case {
-    fn name(&self) -> &'static str {
+    fn key(&self) -> &'static str {
         self.model.key
     }
 
     fn started(&self) -> Started {
         let started = self.family.simulator.start(self.model.key);
-        started.unwrap_or_else(|error| panic!("{}: {error}", self.name()))
+        started.unwrap_or_else(|error| panic!("{}: {error}", self.key()))
     }
 
     /// A link to a simulated unit of the model, found by a search for its family alone.
@@ -51,7 +51,7 @@ impl Case {
             Event::Connected(identity) => Some(identity.clone()),
             _ => None,
         });
-        (link, identity.unwrap_or_else(|| panic!("{} was not found", self.name())))
+        (link, identity.unwrap_or_else(|| panic!("{} was not found", self.key())))
     }
 }
 
@@ -106,22 +106,22 @@ fn the_list_holds_each_family_once_and_each_has_models() {
 fn a_unit_of_each_model_is_found_says_who_it_is_and_is_polled() {
     for case in cases() {
         let (link, unit) = case.connected();
-        assert_eq!(unit.family, case.family.driver.family(), "{}", case.name());
-        assert_eq!(unit.model, Some(case.model.name), "{}", case.name());
+        assert_eq!(unit.family, case.family.driver.family(), "{}", case.key());
+        assert_eq!(unit.model, Some(case.model.name), "{}", case.key());
         let polled = link.events.iter().filter_map(|(_, event)| match event {
             Event::Sample(sample) => Some(sample),
             _ => None,
         });
         let polled: Vec<_> = polled.collect();
-        assert!(polled.len() > 10, "{}: {} samples", case.name(), polled.len());
+        assert!(polled.len() > 10, "{}: {} samples", case.key(), polled.len());
         let channels = unit.channels();
         let strange = polled
             .iter()
             .flat_map(|sample| sample.readings())
             .find(|reading| !channels.contains(&reading.channel));
-        assert!(strange.is_none(), "{}: {strange:?}", case.name());
-        assert!(link.events.iter().any(|(_, event)| matches!(event, Event::Status(_))), "{}", case.name());
-        assert!(!unit.status_row(None, None).is_empty(), "{}", case.name());
+        assert!(strange.is_none(), "{}: {strange:?}", case.key());
+        assert!(link.events.iter().any(|(_, event)| matches!(event, Event::Status(_))), "{}", case.key());
+        assert!(!unit.status_row(None, None).is_empty(), "{}", case.key());
     }
 }
 
@@ -131,41 +131,41 @@ fn a_unit_of_each_model_moves_only_while_it_is_armed_and_stops_with_the_window()
     for case in cases() {
         let (mut link, unit) = case.connected();
         let drive = gentle(&unit);
-        assert!(!unit.preview(&drive).is_empty(), "{}", case.name());
+        assert!(!unit.preview(&drive).is_empty(), "{}", case.key());
         link.ask(brushwork_link::device::Request::Drive(drive));
         link.run_for(SECOND / 5);
-        assert_eq!(link.speeds(0)[0], 0.0, "{} moves unarmed", case.name());
+        assert_eq!(link.speeds(0)[0], 0.0, "{} moves unarmed", case.key());
 
         if !link.arm(ArmScope::CommandLine) {
             // A unit that cannot be driven safely as it comes says why.
-            println!("{}: {:?}", case.name(), refusals(&link));
-            assert!(!refusals(&link).is_empty(), "{}", case.name());
+            println!("{}: {:?}", case.key(), refusals(&link));
+            assert!(!refusals(&link).is_empty(), "{}", case.key());
             continue;
         }
         driven.push(case.family.driver.family());
         link.ask(brushwork_link::device::Request::Drive(drive));
         link.run_for(SECOND / 2);
-        assert!(link.speeds(0)[0] > 1.0, "{}: {} rad/s", case.name(), link.speeds(0)[0]);
+        assert!(link.speeds(0)[0] > 1.0, "{}: {} rad/s", case.key(), link.speeds(0)[0]);
         link.handle.stop_all();
         link.run_for(SECOND);
         // A loop that holds a speed of 0 may still put out a little.
-        assert!(link.speeds(0)[0].abs() < 0.5, "{}: Stop: {} rad/s", case.name(), link.speeds(0)[0]);
-        assert!(link.stops().last().is_some_and(|stop| stop.confirmed()), "{}", case.name());
+        assert!(link.speeds(0)[0].abs() < 0.5, "{}: Stop: {} rad/s", case.key(), link.speeds(0)[0]);
+        assert!(link.stops().last().is_some_and(|stop| stop.confirmed()), "{}", case.key());
 
-        assert!(link.arm(ArmScope::CommandLine), "{}", case.name());
+        assert!(link.arm(ArmScope::CommandLine), "{}", case.key());
         link.ask(brushwork_link::device::Request::Drive(drive));
         link.run_for(SECOND / 2);
-        assert!(link.speeds(0)[0] > 1.0, "{}", case.name());
+        assert!(link.speeds(0)[0] > 1.0, "{}", case.key());
         link.freeze_window();
         link.run_for(SECOND * 5 / 4);
-        assert!(link.speeds(0)[0].abs() < 0.5, "{}: the dead-man: {} rad/s", case.name(), link.speeds(0)[0]);
+        assert!(link.speeds(0)[0].abs() < 0.5, "{}: the dead-man: {} rad/s", case.key(), link.speeds(0)[0]);
         link.thaw_window();
         link.run_for(SECOND / 10);
         let reason = link.events.iter().find_map(|(_, event)| match event {
             Event::Disarmed(reason) => Some(reason),
             _ => None,
         });
-        assert_eq!(reason, Some(&DisarmReason::DeadMan), "{}", case.name());
+        assert_eq!(reason, Some(&DisarmReason::DeadMan), "{}", case.key());
     }
     assert!(FAMILIES.iter().all(|family| driven.contains(&family.driver.family())), "{driven:?}");
 }
@@ -174,7 +174,7 @@ fn a_unit_of_each_model_moves_only_while_it_is_armed_and_stops_with_the_window()
 fn the_settings_of_each_model_are_read_are_in_range_and_take_each_other_value_that_they_offer() {
     for case in cases() {
         let (mut link, unit) = case.connected();
-        let subject = unit.subject().unwrap_or_else(|| panic!("{} has no settings", case.name()));
+        let subject = unit.subject().unwrap_or_else(|| panic!("{} has no settings", case.key()));
         let job = Job::new("settings", 60 * SECOND, move |wire| {
             let table = SettingsTable::new(subject);
             let before = read_all(wire, subject)?.image;
@@ -208,7 +208,7 @@ fn the_settings_of_each_model_are_read_are_in_range_and_take_each_other_value_th
             ))
         });
         let Some(JobEnding::Done((before, wanted, taken, after))) = link.finish(job, 60 * SECOND) else {
-            panic!("{}: the job did not end: {:?}", case.name(), link.events)
+            panic!("{}: the job did not end: {:?}", case.key(), link.events)
         };
         let table = SettingsTable::new(subject);
         let readable =
@@ -216,16 +216,16 @@ fn the_settings_of_each_model_are_read_are_in_range_and_take_each_other_value_th
         let missing: Vec<_> = readable.map(|row| &row.key).collect();
         println!(
             "{}: {} settings, {} written, not read: {missing:?}",
-            case.name(),
+            case.key(),
             before.len(),
             wanted.len()
         );
         for row in table.rows() {
             if let Some(value) = before.get(&row.key) {
-                assert_eq!(row.check(value), Ok(()), "{}", case.name());
+                assert_eq!(row.check(value), Ok(()), "{}", case.key());
             }
         }
-        assert_eq!(taken, Ok(true), "{}", case.name());
+        assert_eq!(taken, Ok(true), "{}", case.key());
         // What is shown for comparison alone follows from the rest.
         let mut expected = before;
         expected.merge(&wanted);
@@ -239,11 +239,11 @@ fn the_settings_of_each_model_are_read_are_in_range_and_take_each_other_value_th
             .filter(|(key, value)| after.get(key) != Some(*value))
             .map(|(key, value)| (key, value, after.get(key)))
             .collect();
-        assert!(differs.is_empty(), "{}: {differs:?}", case.name());
+        assert!(differs.is_empty(), "{}: {differs:?}", case.key());
         assert!(
             wanted.len() * 2 > table.rows().len(),
             "{}: {} of {}",
-            case.name(),
+            case.key(),
             wanted.len(),
             table.rows().len()
         );
@@ -258,7 +258,7 @@ fn the_settings_of_each_model_are_read_are_in_range_and_take_each_other_value_th
             settings: expected,
         };
         let opened = Profile::read(&profile.to_json(), Strictness::Refuse);
-        assert_eq!(opened.map(|opened| opened.profile), Ok(profile), "{}", case.name());
+        assert_eq!(opened.map(|opened| opened.profile), Ok(profile), "{}", case.key());
     }
 }
 
@@ -279,7 +279,7 @@ fn a_unit_of_each_model_that_is_unplugged_is_told_as_lost() {
         link.apply(0, &WorldAction::Unplug { unplugged: true });
         link.run_for(5 * SECOND);
         let lost = link.events.iter().any(|(_, event)| matches!(event, Event::Lost(_)));
-        assert!(lost, "{}: {:?}", case.name(), link.events);
+        assert!(lost, "{}: {:?}", case.key(), link.events);
     }
 }
 
@@ -305,6 +305,6 @@ fn a_unit_that_is_asked_for_at_another_address_is_not_made_up() {
             Event::Connected(identity) => Some(identity.address),
             _ => None,
         });
-        assert!(found.is_none_or(|address| address == other), "{}: {found:?}", case.name());
+        assert!(found.is_none_or(|address| address == other), "{}: {found:?}", case.key());
     }
 }

@@ -52,7 +52,7 @@ impl Typeface<'_> {
     pub fn glyphs(&mut self, text: &str) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(2 * text.len());
         for letter in text.chars() {
-            let glyph = self.charmap.map(letter).map_or(0, |glyph| glyph.to_u32());
+            let glyph = self.charmap.map(letter).map_or(0, skrifa::GlyphId::to_u32);
             let number = self.used.remap(u16::try_from(glyph).unwrap_or_default());
             self.letters.entry(number).or_insert(letter);
             bytes.extend(number.to_be_bytes());
