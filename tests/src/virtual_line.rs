@@ -59,6 +59,18 @@ impl<M: Machine + 'static> VirtualLine<M> {
         PacketWire::new(exchange, address, generation, simulated)
     }
 
+    /// All that has arrived by now, as far as there is room.
+    pub fn read_all(&mut self, buffer: &mut [u8]) -> Result<usize, TransportError> {
+        let mut count = self.read(buffer, Duration::ZERO)?;
+        while count > 0 && count < buffer.len() {
+            match self.read(&mut buffer[count..], Duration::ZERO)? {
+                0 => break,
+                more => count += more,
+            }
+        }
+        Ok(count)
+    }
+
     /// The next reply, or nothing when none leaves until `deadline`.
     fn wait_for_output(&self, deadline: Duration) -> Result<Vec<u8>, TransportError> {
         let mut machine = self.lock();

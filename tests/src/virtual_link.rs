@@ -45,6 +45,7 @@ pub struct VirtualLink<M: Machine = Bus> {
     hooks: Hooks,
     frame_at: Duration,
     written: Written,
+    timer: Arc<Mutex<Duration>>,
 }
 
 /// What the loop has written, each write by itself.
@@ -58,6 +59,7 @@ struct Watched<M: Machine> {
     window_alive: Arc<AtomicBool>,
     byte_time: Option<Duration>,
     written: Written,
+    timer: Arc<Mutex<Duration>>,
 }
 
 impl VirtualLink {
@@ -128,8 +130,10 @@ impl<M: Machine + 'static> VirtualLink<M> {
             window_alive: Arc::clone(&window_alive),
             byte_time,
             written: Written::default(),
+            timer: Arc::default(),
         };
         let written = Arc::clone(&watched.written);
+        let timer = Arc::clone(&watched.timer);
         let (device_loop, handle) = open(Box::new(watched), Arc::new(line.clock().clone()));
         let handle = Arc::new(handle);
         *lock(&handle_for_hooks) = Some(Arc::clone(&handle));
@@ -144,7 +148,13 @@ impl<M: Machine + 'static> VirtualLink<M> {
             hooks,
             frame_at,
             written,
+            timer,
         }
+    }
+
+    /// Bytes are handed over at each turn of such a timer alone, as the adapters of serial ports do; at once where it is zero.
+    pub fn set_timer(&self, timer: Duration) {
+        *lock(&self.timer) = timer;
     }
 
     /// The window hangs: it renews nothing and takes nothing.
@@ -304,6 +314,30 @@ impl<M: Machine + 'static> VirtualLink<M> {
     }
 }
 
+impl<M: Machine + 'static> Watched<M> {
+    /// Reads what is there at the next turn of the adapter's timer, if that comes in time.
+    fn read_at_turns(
+        &mut self,
+        buffer: &mut [u8],
+        timer: Duration,
+        until: Duration,
+    ) -> Result<usize, TransportError> {
+        let now = self.line.clock().now();
+        let turns = now.as_nanos().div_ceil(timer.as_nanos());
+        let mut turn = timer * u32::try_from(turns).unwrap_or(u32::MAX);
+        while turn <= until {
+            self.line.clock().advance_to(turn);
+            let count = self.line.read_all(buffer)?;
+            if count > 0 {
+                return Ok(count);
+            }
+            turn += timer;
+        }
+        self.line.clock().advance_to(until);
+        Ok(0)
+    }
+}
+
 impl<M: Machine + 'static> Transport for Watched<M> {
     fn write(&mut self, bytes: &[u8]) -> Result<(), TransportError> {
         lock(&self.written).push(bytes.to_vec());
@@ -313,7 +347,11 @@ impl<M: Machine + 'static> Transport for Watched<M> {
     fn read(&mut self, buffer: &mut [u8], timeout: Duration) -> Result<usize, TransportError> {
         let until = self.line.clock().now() + timeout;
         let stop_at = next_hook(&self.hooks).map_or(until, |at| at.min(until));
-        let count = self.line.read(buffer, stop_at.saturating_sub(self.line.clock().now()))?;
+        let timer = *lock(&self.timer);
+        let count = match timer {
+            Duration::ZERO => self.line.read(buffer, stop_at.saturating_sub(self.line.clock().now()))?,
+            timer => self.read_at_turns(buffer, timer, stop_at)?,
+        };
         if let Some(handle) = lock(&self.handle).as_ref() {
             run_hooks(&self.hooks, handle, self.line.clock().now());
             // Frames go on while the loop waits for bytes, in a job for instance.

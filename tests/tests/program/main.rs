@@ -23,6 +23,7 @@ mod scripts;
 mod settings;
 mod settings_as_read;
 mod settings_cut;
+mod slow_lines;
 mod targets;
 mod tune_command;
 mod tuning;

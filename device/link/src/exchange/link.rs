@@ -5,6 +5,7 @@ use super::given_up::GivenUp;
 use super::request::{Judgement, Outgoing, Span};
 use super::statistics::{Counters, LinkStatistics};
 use super::trace::{Trace, Traffic};
+use super::turnaround::Turnaround;
 use super::watch::Watch;
 use crate::clock::Clock;
 use crate::device::StopBytes;
@@ -36,11 +37,15 @@ pub struct Exchange {
     pub(super) unsettled: bool,
     /// Requests whose replies were given up and may still come, long after the line was quiet once.
     pub(super) given_up: GivenUp,
-    /// Whether the request of the present attempt went out.
-    sent: bool,
+    /// When the request of the present attempt went out, if it did.
+    sent_at: Option<Duration>,
     pub(super) last_reply_at: Duration,
     /// Time that every reply may take beyond what the link and its request need.
     patience: Duration,
+    /// What the replies so far tell of this line.
+    turnaround: Turnaround,
+    /// Whether addresses are asked at which nobody may be.
+    is_scanning: bool,
     /// Counts in place of the transport's own while a search is on.
     latency: Option<Duration>,
 }
@@ -58,9 +63,11 @@ impl Exchange {
             received: Vec::new(),
             unsettled: false,
             given_up: GivenUp::default(),
-            sent: false,
+            sent_at: None,
             last_reply_at: now,
             patience: Duration::ZERO,
+            turnaround: Turnaround::default(),
+            is_scanning: false,
             latency: None,
         }
     }
@@ -80,14 +87,19 @@ impl Exchange {
         judge: &mut dyn FnMut(&[u8]) -> Judgement,
     ) -> Result<Span, ExchangeError> {
         let mut tries = 0;
+        let mut first_at = None;
         loop {
             tries += 1;
             let error = match self.attempt(request, watch, judge, Tries(tries)) {
-                Ok(span) => return Ok(span),
+                Ok(span) => {
+                    self.learn(request, span, first_at.unwrap_or(span.requested_at));
+                    return Ok(span);
+                }
                 Err(error) => error,
             };
+            first_at = first_at.or(self.sent_at);
             let final_word = error.is_link_lost() || error.interruption().is_some();
-            if request.once && self.sent {
+            if request.once && self.sent_at.is_some() {
                 return Err(ExchangeError::MayHaveRun { cause: Box::new(error) });
             }
             if final_word || request.once || tries > request.retries {
@@ -136,9 +148,24 @@ impl Exchange {
         span
     }
 
-    /// Waits until the line has been quiet for [`RECOVERY`], throwing away what comes.
+    /// Waits until the line has been quiet for [`RECOVERY`], throwing away what comes; where replies are late, until what was given up has had
+    /// its time.
     pub fn settle(&mut self, watch: &dyn Watch) -> Result<(), ExchangeError> {
-        self.wait_for_silence(RECOVERY, watch)
+        if self.has_late_replies() {
+            self.drain(self.longest_turnaround(), watch)
+        } else {
+            self.wait_for_silence(RECOVERY, watch)
+        }
+    }
+
+    /// Whether replies that nobody waits for are on their way on a line that is late: they would be taken for those of the next request.
+    fn has_late_replies(&self) -> bool {
+        !self.is_scanning && self.is_late() && self.may_hear_late_replies()
+    }
+
+    /// Lets silence tell nothing of the line while addresses are asked at which nobody may be.
+    pub fn set_scanning(&mut self, is_scanning: bool) {
+        self.is_scanning = is_scanning;
     }
 
     fn wait_for_silence(&mut self, quiet: Duration, watch: &dyn Watch) -> Result<(), ExchangeError> {
@@ -250,16 +277,16 @@ impl Exchange {
         tries: Tries,
     ) -> Result<Span, ExchangeError> {
         self.received.clear();
-        self.sent = false;
+        self.sent_at = None;
         self.look(watch, self.clock.now())?;
-        if self.unsettled {
+        if self.unsettled || self.has_late_replies() {
             self.settle(watch)?;
         }
         self.counters.totals.stray_bytes += self.transport.discard_input()? as u64;
         let requested_at = self.clock.now();
         self.unsettled = true;
         self.write(request.bytes)?;
-        self.sent = true;
+        self.sent_at = Some(requested_at);
         let replied_at = match self.receive(request, watch, judge, requested_at, tries) {
             Ok(replied_at) => replied_at,
             Err(error) => {
@@ -295,6 +322,9 @@ impl Exchange {
                 if now >= deadline {
                     // That nobody is there is what a search finds out, and no fault of the link.
                     self.counters.totals.timeouts += u64::from(!self.is_searching());
+                    if !self.is_searching() && !self.is_scanning {
+                        self.turnaround.timed_out();
+                    }
                     let waited = now.saturating_sub(requested_at);
                     return Err(ExchangeError::TimedOut { waited, tries, heard: self.received.len() });
                 }
@@ -334,9 +364,34 @@ impl Exchange {
         let bytes = u32::try_from(bytes).unwrap_or(u32::MAX);
         let on_the_wire = self.transport.byte_time().unwrap_or_default().saturating_mul(bytes);
         on_the_wire
-            + self.latency.unwrap_or_else(|| self.transport.latency())
+            + self.latency.unwrap_or_else(|| self.longest_turnaround())
             + request.patience
             + self.patience
+    }
+
+    /// How long this line and the controller behind it may take beyond the time of the bytes on the wire, as far as they have shown.
+    #[must_use]
+    pub fn longest_turnaround(&self) -> Duration {
+        self.turnaround.allowance(self.transport.latency())
+    }
+
+    /// Whether replies take longer than is usual for this kind of port.
+    #[must_use]
+    pub fn is_late(&self) -> bool {
+        self.longest_turnaround() > self.transport.latency()
+    }
+
+    /// Learns from a reply how long the line takes. What a controller works on for long tells nothing. A reply to a request that was sent again may be
+    /// that to the first (Karn's rule, RFC 6298, section 3): it counts from there unless it is as quick as others were.
+    fn learn(&mut self, request: &Outgoing<'_>, span: Span, first_at: Duration) {
+        if !request.patience.is_zero() || self.is_searching() {
+            return;
+        }
+        let bytes = u32::try_from(request.bytes.len() + request.reply_length).unwrap_or(u32::MAX);
+        let on_the_wire = self.transport.byte_time().unwrap_or_default().saturating_mul(bytes);
+        let since = |at: Duration| span.replied_at.saturating_sub(at).saturating_sub(on_the_wire);
+        let is_its_own = self.turnaround.is_usual(since(span.requested_at));
+        self.turnaround.learn(since(if is_its_own { span.requested_at } else { first_at }));
     }
 
     fn write(&mut self, bytes: &[u8]) -> Result<(), ExchangeError> {

@@ -10,6 +10,7 @@ mod permit;
 mod request;
 pub mod statistics;
 pub mod trace;
+mod turnaround;
 pub mod watch;
 
 pub use between::{Bracketed, transact_between};

@@ -6,7 +6,7 @@
 use crate::can::{MASTER_LIMIT, Monitor, Place};
 use crate::controller::speaker::{Speaker, Wire};
 use brushwork_link::device::controller::{ArmCheck, Line};
-use brushwork_link::exchange::ExchangeError;
+use brushwork_link::exchange::{Exchange, ExchangeError};
 use brushwork_link::failure::Failure;
 use brushwork_link::transport::Stream;
 use brushwork_mcp_wire::packet_serial::name::{STATUS, TIMEOUT, TYPE};
@@ -44,6 +44,7 @@ pub fn check(
         }
     };
     let controller_timeout = watchdog.map_err(|objection| objections.insert(0, objection)).ok();
+    objections.extend(controller_timeout.and_then(|timeout| object_to_lateness(line.exchange(), timeout)));
     objections.extend(faults(speaker, line)?.into_iter().map(|fault| {
         object(format!("the controller reports {fault}"), "Remove the cause and reset the error first")
     }));
@@ -126,6 +127,23 @@ fn of_streams<const L: u8>(streams: &Read<L>, stream: Option<Stream>) -> Result<
         longest = longest.max(Some(Duration::from_millis(timeout_ms)));
     }
     longest.ok_or_else(unreadable)
+}
+
+/// On a line that is late the time-out must outlast a reply that is lost and the one that is asked for in its place, or each loss stops the motors.
+fn object_to_lateness(exchange: &Exchange, timeout: Duration) -> Option<Objection> {
+    let latest = exchange.longest_turnaround();
+    (exchange.is_late() && timeout < 2 * latest).then(|| {
+        // To the next 100 ms, in which RoboClaws count.
+        let enough_ms = (2 * latest).as_millis().next_multiple_of(100);
+        object(
+            format!(
+                "replies on this line take up to {} ms, so a serial time-out of {} ms would stop the motors at each reply that is lost",
+                latest.as_millis(),
+                timeout.as_millis()
+            ),
+            format!("Set the time-out to {enough_ms} ms or more in General Settings"),
+        )
+    })
 }
 
 fn no_timeout(candidate: Stream, is_known: bool) -> Objection {

@@ -26,8 +26,6 @@ const SCAN_RETRIES: u32 = 1;
 /// How much longer a reply may take when nobody has answered before: a computer under load leaves no process its turn
 /// within the usual time, and a controller may just be starting. Nobody is asked twice who has answered.
 const PATIENCE: [Duration; 3] = [Duration::ZERO, Duration::from_millis(150), Duration::from_millis(500)];
-/// The same for a scan of all addresses, which would take eight times as long.
-const SCAN_PATIENCE: [Duration; 2] = [Duration::ZERO, Duration::from_millis(150)];
 
 impl Search for PacketSerial {
     fn discover(
@@ -37,6 +35,7 @@ impl Search for PacketSerial {
     ) -> Result<Vec<Box<dyn Controller>>, DiscoverError> {
         let units = find(line, options);
         line.exchange().set_patience(Duration::ZERO);
+        line.exchange().set_scanning(false);
         units
     }
 
@@ -78,15 +77,26 @@ fn find(line: &mut Line<'_>, options: &DeviceOptions) -> Result<Vec<Box<dyn Cont
 /// The addresses that answer with a version, and their answers. A line that needed patience keeps it until all units
 /// are known.
 fn scan(line: &mut Line<'_>, addresses: Addresses) -> Result<Vec<(Address, String)>, ExchangeError> {
-    let (candidates, patience) = match addresses {
-        Addresses::Scan => (Address::ALL.to_vec(), &SCAN_PATIENCE[..]),
-        Addresses::Only(byte) => (Address::new(byte).into_iter().collect(), &PATIENCE[..]),
-        Addresses::These(set) => (set.iter().filter_map(Address::new).collect(), &SCAN_PATIENCE[..]),
-        Addresses::Factory => (vec![Address::DEFAULT], &PATIENCE[..]),
+    let candidates = match addresses {
+        Addresses::Scan => Address::ALL.to_vec(),
+        Addresses::Only(byte) => Address::new(byte).into_iter().collect(),
+        Addresses::These(set) => set.iter().filter_map(Address::new).collect(),
+        Addresses::Factory => vec![Address::DEFAULT],
     };
     let mut answers = Vec::new();
-    for (round, patience) in patience.iter().enumerate() {
-        line.exchange().set_patience(*patience);
+    line.exchange().set_scanning(true);
+    let heard_before = line.exchange().statistics().bytes_in;
+    for (round, patience) in PATIENCE.into_iter().enumerate() {
+        if round > 0 {
+            // What the round before asked for may still be on its way, and answers nothing any more.
+            let (exchange, watch) = line.parts();
+            exchange.drain(patience, watch)?;
+        }
+        // A line that is later than that has brought its first replies by now; a silent one is not scanned for long.
+        if round > 1 && candidates.len() > 1 && line.exchange().statistics().bytes_in == heard_before {
+            break;
+        }
+        line.exchange().set_patience(patience);
         line.set_retries(match (round, candidates.len()) {
             (0, 0..=1) => RETRIES,
             (0, _) => SCAN_RETRIES,
@@ -98,6 +108,7 @@ fn scan(line: &mut Line<'_>, addresses: Addresses) -> Result<Vec<(Address, Strin
         }
     }
     line.set_retries(RETRIES);
+    line.exchange().set_scanning(false);
     Ok(answers)
 }
 
