@@ -46,6 +46,8 @@ pub struct Exchange {
     turnaround: Turnaround,
     /// Whether addresses are asked at which nobody may be.
     is_scanning: bool,
+    /// Time of the present request in which this thread had no processor: no fault of the line.
+    stolen: Duration,
     /// Counts in place of the transport's own while a search is on.
     latency: Option<Duration>,
 }
@@ -68,6 +70,7 @@ impl Exchange {
             patience: Duration::ZERO,
             turnaround: Turnaround::default(),
             is_scanning: false,
+            stolen: Duration::ZERO,
             latency: None,
         }
     }
@@ -88,6 +91,7 @@ impl Exchange {
     ) -> Result<Span, ExchangeError> {
         let mut tries = 0;
         let mut first_at = None;
+        self.stolen = Duration::ZERO;
         loop {
             tries += 1;
             let error = match self.attempt(request, watch, judge, Tries(tries)) {
@@ -317,6 +321,10 @@ impl Exchange {
             self.look(watch, now)?;
             let slice = self.slice(watch, now, deadline);
             let count = self.transport.read(&mut buffer, slice)?;
+            let late = self.clock.now().saturating_sub(now + slice);
+            if late >= STOLEN {
+                self.stolen += late;
+            }
             if count == 0 {
                 // What came while this thread had no processor has been looked for by now.
                 if now >= deadline {
@@ -328,7 +336,6 @@ impl Exchange {
                     let waited = now.saturating_sub(requested_at);
                     return Err(ExchangeError::TimedOut { waited, tries, heard: self.received.len() });
                 }
-                let late = self.clock.now().saturating_sub(now + slice);
                 if late >= STOLEN && lost < STOLEN_MOST {
                     lost += late;
                     deadline += late;
@@ -389,7 +396,8 @@ impl Exchange {
         }
         let bytes = u32::try_from(request.bytes.len() + request.reply_length).unwrap_or(u32::MAX);
         let on_the_wire = self.transport.byte_time().unwrap_or_default().saturating_mul(bytes);
-        let since = |at: Duration| span.replied_at.saturating_sub(at).saturating_sub(on_the_wire);
+        let since =
+            |at: Duration| span.replied_at.saturating_sub(at).saturating_sub(on_the_wire + self.stolen);
         let is_its_own = self.turnaround.is_usual(since(span.requested_at));
         self.turnaround.learn(since(if is_its_own { span.requested_at } else { first_at }));
     }

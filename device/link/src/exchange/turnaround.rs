@@ -34,9 +34,9 @@ impl Turnaround {
         });
     }
 
-    /// Whether other replies came as late as this.
+    /// Whether other replies came about as late as this.
     pub fn is_usual(&self, took: Duration) -> bool {
-        self.learned.is_some_and(|Learned { mean, deviation }| took <= mean + deviation * 4)
+        self.learned.is_some_and(|Learned { mean, deviation }| took <= mean + deviation * 4 + ROOM / 2)
     }
 
     /// No reply came in time.

@@ -129,12 +129,13 @@ fn of_streams<const L: u8>(streams: &Read<L>, stream: Option<Stream>) -> Result<
     longest.ok_or_else(unreadable)
 }
 
-/// On a line that is late the time-out must outlast a reply that is lost and the one that is asked for in its place, or each loss stops the motors.
+/// On a line that is late the time-out must outlast a reply that is lost, the wait for what may still come, and the reply that is asked for in its
+/// place, or each loss stops the motors.
 fn object_to_lateness(exchange: &Exchange, timeout: Duration) -> Option<Objection> {
     let latest = exchange.longest_turnaround();
-    (exchange.is_late() && timeout < 2 * latest).then(|| {
+    (exchange.is_late() && timeout < 3 * latest).then(|| {
         // To the next 100 ms, in which RoboClaws count.
-        let enough_ms = (2 * latest).as_millis().next_multiple_of(100);
+        let enough_ms = (3 * latest).as_millis().next_multiple_of(100);
         object(
             format!(
                 "replies on this line take up to {} ms, so a serial time-out of {} ms would stop the motors at each reply that is lost",
