@@ -82,6 +82,10 @@ fn a_target_prints_as_it_is_typed() {
         "tcp:[::1]:5000,family=mcp",
         "COM3,baud=9600,stream=usb",
         "tcp:[::1]:5000,stream=ttl3",
+        "/dev/ttyUSB0,baud=115200,stream=ttl1,latency=800",
+        "tcp:[::1]:5000,latency=10000,family=mcp",
+        "can:/dev/ttyUSB0,node=3,latency=800",
+        "can:tcp:[::1]:5000,node=3,latency=800",
         "sim:mcp266",
     ] {
         assert_eq!(parse(text).unwrap().to_string(), text);
@@ -96,6 +100,10 @@ fn a_bad_target_says_what_would_be_good() {
     assert!(sentence("tcp:host").contains("tcp:host:port"));
     assert!(sentence("tcp::80").contains("tcp:host:port"));
     assert!(sentence("COM3,baud=12").contains("300 to 1000000"));
+    for latency in ["0", "10001", "soon", "-1"] {
+        assert!(sentence(&format!("COM3,latency={latency}")).contains("1 to 10000 ms"), "{latency}");
+        assert!(sentence(&format!("can:COM3,latency={latency}")).contains("1 to 10000 ms"), "{latency}");
+    }
     assert!(sentence("COM3,family=can").contains("motion-mind"));
     assert!(sentence("COM3,stream=can").contains("rs232"));
     assert!(sentence("can:COM3,node=0").contains("1 to 127"));

@@ -149,9 +149,8 @@ impl fmt::Display for ConnectTarget {
                             write!(f, ",baud={baud}")?;
                         }
                     }
-                    other @ (Self::Tcp { .. } | Self::Can { .. } | Self::Sim(_)) => {
-                        write!(f, "can:{other}")?;
-                    }
+                    Self::Tcp { address, .. } => write!(f, "can:tcp:{address}")?,
+                    other @ (Self::Can { .. } | Self::Sim(_)) => write!(f, "can:{other}")?,
                 }
                 if let Some(node) = node {
                     write!(f, ",node={}", node.get())?;

@@ -35,7 +35,6 @@ impl Search for PacketSerial {
     ) -> Result<Vec<Box<dyn Controller>>, DiscoverError> {
         let units = find(line, options);
         line.exchange().set_patience(Duration::ZERO);
-        line.exchange().set_scanning(false);
         units
     }
 
@@ -53,7 +52,10 @@ impl Search for PacketSerial {
 
 fn find(line: &mut Line<'_>, options: &DeviceOptions) -> Result<Vec<Box<dyn Controller>>, DiscoverError> {
     let heard_before = line.exchange().statistics().bytes_in;
-    let answers = scan(line, options.addresses)?;
+    line.exchange().set_scanning(true);
+    let answers = scan(line, options.addresses);
+    line.exchange().set_scanning(false);
+    let answers = answers?;
     if answers.is_empty() {
         let heard = line.exchange().statistics().bytes_in - heard_before;
         return Err(DiscoverError::NothingThere(nothing_there(line, options.addresses, heard)));
@@ -84,17 +86,16 @@ fn scan(line: &mut Line<'_>, addresses: Addresses) -> Result<Vec<(Address, Strin
         Addresses::Factory => vec![Address::DEFAULT],
     };
     let mut answers = Vec::new();
-    line.exchange().set_scanning(true);
     let heard_before = line.exchange().statistics().bytes_in;
     for (round, patience) in PATIENCE.into_iter().enumerate() {
+        // A line that is later than that has brought its first replies by now; a silent one is not scanned for long.
+        if round > 1 && candidates.len() > 1 && line.exchange().statistics().bytes_in == heard_before {
+            break;
+        }
         if round > 0 {
             // What the round before asked for may still be on its way, and answers nothing any more.
             let (exchange, watch) = line.parts();
             exchange.drain(patience, watch)?;
-        }
-        // A line that is later than that has brought its first replies by now; a silent one is not scanned for long.
-        if round > 1 && candidates.len() > 1 && line.exchange().statistics().bytes_in == heard_before {
-            break;
         }
         line.exchange().set_patience(patience);
         line.set_retries(match (round, candidates.len()) {
@@ -108,7 +109,6 @@ fn scan(line: &mut Line<'_>, addresses: Addresses) -> Result<Vec<(Address, Strin
         }
     }
     line.set_retries(RETRIES);
-    line.exchange().set_scanning(false);
     Ok(answers)
 }
 

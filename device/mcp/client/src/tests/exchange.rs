@@ -94,6 +94,11 @@ impl Transport for Starved {
 
 /// What a battery that answers after so long reads when the reader had no processor for `stolen` after asking.
 fn starved(stolen: Duration, after: Duration) -> Result<Reply, ExchangeError> {
+    asked_starved(stolen, after).0
+}
+
+/// The same, with how long the line may take from then on.
+fn asked_starved(stolen: Duration, after: Duration) -> (Result<Reply, ExchangeError>, Duration) {
     let clock = VirtualClock::new();
     let far_end = script(vec![(READ_BATTERY.to_vec(), vec![(after, battery())])]);
     let (inner, _) = ScriptedTransport::new(&clock, far_end);
@@ -101,7 +106,14 @@ fn starved(stolen: Duration, after: Duration) -> Result<Reply, ExchangeError> {
     let mut exchange = Exchange::new(Box::new(transport), Arc::new(clock));
     let request = Request::new(Address::DEFAULT, number::READ_MAIN_BATTERY, &[]);
     let ask = Ask { request: &request, generation: Generation::Gen1, permit: Permit::default(), retries: 0 };
-    transact(&mut exchange, &Unwatched, &ask)
+    let reply = transact(&mut exchange, &Unwatched, &ask);
+    (reply, exchange.longest_turnaround())
+}
+
+#[test]
+fn time_without_a_processor_does_not_make_a_line_late() {
+    assert_eq!(asked_starved(ms(900), ms(10)).1, ms(50));
+    assert_eq!(asked_starved(ms(0), ms(45)).1, ms(167), "three times a first reply of 45 ms, and 32");
 }
 
 #[test]
