@@ -14,7 +14,7 @@ use brushwork_values::parse_byte;
 pub struct ConnectArgs {
     /// sim:mcp266[,generation=4,preset=NAME], /dev/ttyACM0, /dev/ttyUSB0,baud=115200,stream=ttl1, COM3 or
     /// tcp:HOST:PORT; a CANopen bus as can:PORT[,node=3,form=binary]; a Motion Mind as sim:motion-mind-3[,mode=4,protocol=ascii]
-    /// or with ,family=motion-mind behind its port. ,latency=800 lets replies take 800 ms; up to 500 ms is found out.
+    /// or with ,family=motion-mind behind its port. ,latency=800 lets replies take 800 ms; packet serial finds up to 500 ms out.
     #[arg(long, short = 'c', alias = "to", value_name = "TARGET", default_value = "sim:mcp266")]
     pub connect: String,
     /// Address of the controller on its line: 0x80 to 0x87, or 1 to 98 for a Motion Mind. Without it 0x80, or 1.
