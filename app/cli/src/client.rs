@@ -14,6 +14,7 @@ use super::family;
 use super::shared_args::LineArgs;
 use super::{ConnectArgs, Exit, Family, Interrupt, say};
 use brushwork_core::session::{self, Session, SessionOptions, Simulation};
+use brushwork_link::family::addresses_text;
 
 /// How long a controller may take to be found and identified.
 pub const CONNECT_LIMIT: Duration = Duration::from_secs(60);
@@ -89,7 +90,10 @@ pub fn line_target(args: &LineArgs) -> Result<ConnectTarget, Exit> {
     let one_family =
         families().iter().any(|family| args.address.iter().all(|address| family.has_address(*address)));
     if !on_can && !one_family {
-        return Err(Exit::Usage.saying("Could not understand --address: a line has controllers of one family, MCP or RoboClaw at 0x80 to 0x87 or Motion Minds at 1 to 98."));
+        return Err(Exit::Usage.saying(format!(
+            "Could not understand --address: a line has controllers of one family: {}.",
+            addresses_text()
+        )));
     }
     Ok(at_addresses(target, &args.address))
 }

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use brushwork_link::FamilyChoice;
+use brushwork_link::family::addresses_text;
 use brushwork_link::unit::parse_number;
 use brushwork_plant::world::{CanPeer, I2cDevice, WorldAction};
 use clap::{Args, ValueEnum};
@@ -17,10 +18,10 @@ pub struct ConnectArgs {
     /// or with ,family=motion-mind behind its port. ,latency=800 lets replies take 800 ms; packet serial finds up to 500 ms out.
     #[arg(long, short = 'c', alias = "to", value_name = "TARGET", default_value = "sim:mcp266")]
     pub connect: String,
-    /// Address of the controller on its line: 0x80 to 0x87, or 1 to 98 for a Motion Mind. Without it 0x80, or 1.
-    #[arg(long, value_name = "ADDRESS", value_parser = parse_connect_address)]
+    /// Address of the controller on its line, by default that of a new unit.
+    #[arg(long, value_name = "ADDRESS", value_parser = parse_connect_address, help = address_help())]
     pub address: Option<u8>,
-    /// Which protocol family to look for; without it packet serial first, then a Motion Mind.
+    /// Which protocol family to look for; without it each in turn.
     #[arg(long, value_name = "auto|mcp|motion-mind", default_value_t, hide_default_value = true)]
     pub family: FamilyChoice,
 }
@@ -34,7 +35,7 @@ pub struct LineArgs {
     /// Addresses, or node ids on a CAN bus, with commas between them: 0x80,0x81. Without it all that the line has.
     #[arg(long, value_name = "ADDRESS", value_delimiter = ',', value_parser = parse_line_address)]
     pub address: Vec<u8>,
-    /// Which protocol family to look for; without it packet serial first, then a Motion Mind.
+    /// Which protocol family to look for; without it each in turn.
     #[arg(long, value_name = "auto|mcp|motion-mind", default_value_t, hide_default_value = true)]
     pub family: FamilyChoice,
 }
@@ -100,19 +101,19 @@ pub fn parse_seconds(text: &str) -> Result<Duration, String> {
         .ok_or_else(|| format!("\"{text}\" is no time in seconds: use for example 2 or 0.5"))
 }
 
-/// Reads an address of either family.
-fn parse_connect_address(text: &str) -> Result<u8, String> {
-    let number = parse_number(text);
-    number.ok_or_else(|| {
-        format!("\"{text}\" is no address: use 0x80 to 0x87 (128 to 135), or 1 to 98 for a Motion Mind")
-    })
+fn address_help() -> String {
+    format!("Address of the controller on its line, by default that of a new unit: {}", addresses_text())
 }
 
-/// Reads an address of either family or a node id.
+/// Reads an address of any family.
+fn parse_connect_address(text: &str) -> Result<u8, String> {
+    let number = parse_number(text);
+    number.ok_or_else(|| format!("\"{text}\" is no address: use that of {}", addresses_text()))
+}
+
+/// Reads an address of any family or a node id.
 fn parse_line_address(text: &str) -> Result<u8, String> {
     parse_byte(text).filter(|number| (1..=0x87).contains(number)).ok_or_else(|| {
-        format!(
-            "\"{text}\" is no address: use 0x80 to 0x87 (128 to 135), 1 to 98 for a Motion Mind, or 1 to 127 for a CANopen node"
-        )
+        format!("\"{text}\" is no address: use that of {}, CANopen node at 1 to 127", addresses_text())
     })
 }

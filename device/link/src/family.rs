@@ -154,6 +154,13 @@ pub fn families() -> &'static [FamilyRef] {
     FAMILIES.get().map_or(&[], Vec::as_slice)
 }
 
+/// The addresses that units of each family can have, for sentences: "MCP or RoboClaw at 0x80 to 0x87, Motion Mind at 0 to 98".
+#[must_use]
+pub fn addresses_text() -> String {
+    let each = families().iter().map(|family| format!("{} at {}", family.label(), family.addresses()));
+    each.collect::<Vec<_>>().join(", ")
+}
+
 /// The model with this key or printed name, whatever its case, in any family.
 #[must_use]
 pub fn model_named(name: &str) -> Option<&'static Model> {

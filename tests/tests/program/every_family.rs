@@ -181,7 +181,7 @@ fn the_settings_of_each_model_are_read_are_in_range_and_take_each_other_value_th
             // The least change of each setting, one write for all that can be planned beside each other.
             let mut wanted = SettingsImage::default();
             // What the line itself depends on stays as it is.
-            let is_of_the_line = |row: &Row| matches!(row.group, Group::Unit | Group::Streams | Group::Buses);
+            let is_of_the_line = |row: &Row| matches!(row.group, Group::UNIT | Group::STREAMS | Group::BUSES);
             let free = |row: &&Row| row.locked(true).is_none() && row.has_wire_form() && !is_of_the_line(row);
             for row in table.rows().iter().filter(free) {
                 let Some(value) = before.get(&row.key).and_then(|value| {

@@ -46,7 +46,7 @@ impl<'i> Controller<'i> {
         let version = &client.identity.version_text;
         let Some(subject) = client.identity.subject() else {
             return Err(Exit::Refused.saying(format!(
-                "The unit at {} on {} calls itself \"{version}\", which is no MCP, RoboClaw or Motion Mind: its \
+                "The unit at {} on {} calls itself \"{version}\", which is no model that this program knows: its \
                  settings are not known.",
                 client.identity.place(),
                 client.identity.port

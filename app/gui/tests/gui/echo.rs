@@ -21,7 +21,6 @@ use brushwork_gui::screens::face::Face;
 use brushwork_link::device::{
     Addresses, ArmScope, Channel, DeviceLoop, DeviceOptions, Drive, Identity, Request,
 };
-use brushwork_link::settings::Group;
 use brushwork_link::transport::{ConnectTarget, PortInfo};
 use brushwork_link::{Clock as _, Failure, FamilyChoice, FamilyRef};
 use brushwork_plant::machine::StreamIndex;
@@ -29,7 +28,7 @@ use brushwork_values::Motor;
 use crossbeam_channel::{Receiver, bounded};
 use egui_kittest::kittest::Queryable as _;
 use egui_kittest::{Harness, HarnessBuilder};
-use family::{CHANNELS, ECHO, Echo, EchoMachine};
+use family::{CHANNELS, ECHO, Echo, EchoMachine, LOOP};
 
 #[path = "../../../../tests/tests/program/echo/family.rs"]
 #[allow(dead_code, reason = "shared with the tests of the program")]
@@ -178,7 +177,7 @@ fn show_it() {
     assert!(name.starts_with("Echo 1") && bench.sees(&name), "its name: {name}");
     assert_eq!(bench.app().model.front.link.indicators.named("HOT").word(), "OK");
     bench.app().model.turn_to(Screen::GeneralSettings);
-    bench.app().model.front.general.turn_to(Section::Group(Group::Loop));
+    bench.app().model.front.general.turn_to(Section::Group(LOOP));
     bench.pass_ms(100);
     assert!(bench.sees("Gain"), "its one setting");
     bench.app().model.turn_to(Screen::Velocity);

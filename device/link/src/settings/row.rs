@@ -6,7 +6,7 @@
 use std::fmt;
 
 use brushwork_values::Unit;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::kind::{Coding, Kind};
 use super::notation::Notation;
@@ -50,53 +50,62 @@ pub struct Row {
     pub register: Option<u8>,
 }
 
-brushwork_values::listed! {
-    /// A part of the settings, in the order in which screens show them.
-    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
-    #[serde(rename_all = "snake_case")]
-    pub enum Group {
-        /// Address, mixing, E-Stop, PWM mode.
-        Unit "Unit settings",
-        /// Battery voltage windows.
-        VoltageLimits "Voltage limits",
-        /// Current limits per motor.
-        CurrentLimits "Current limits",
-        /// Which input commands the motors.
-        PriorityLevels "Priority levels",
-        /// Running a script after power up.
-        Scripting "Scripting",
-        /// Which pin is the encoder of a motor.
-        Encoders "Encoders",
-        /// Inductance, resistance, acceleration and idle behaviour of a motor.
-        Motor "Motor",
-        /// Velocity gains and top speed.
-        Velocity "Velocity",
-        /// Position gains and travel.
-        Position "Position",
-        /// Speed and position error limits.
-        ErrorLimits "Error limits",
-        /// Homing.
-        Homing "Homing",
-        /// Input pins.
-        Pins "Pins",
-        /// Serial ports.
-        Streams "Serial ports",
-        /// CAN and I2C buses.
-        Buses "CAN and I2C",
-        /// Digital outputs.
-        Outputs "Digital outputs",
-        /// What only one line of a family's boards has.
-        #[serde(rename = "robo_claw")]
-        ProductLine "RoboClaw",
-        /// The PID of a Motion Mind.
-        Loop "PID",
-        /// The bits of FUNCTION of a Motion Mind.
-        Functions "FUNCTION",
-        /// The bits of FUNCTION2 of a Motion Mind.
-        Functions2 "FUNCTION2",
+/// A part of the settings: where it stands among the others, its name in files and its heading. Those here may be any family's; a family
+/// adds one of its own by [`Group::new`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Group {
+    order: u8,
+    key: &'static str,
+    label: &'static str,
+}
+
+impl Group {
+    /// Address, mixing, E-Stop, PWM mode.
+    pub const UNIT: Self = Self::new(10, "unit", "Unit settings");
+    /// Battery voltage windows.
+    pub const VOLTAGE_LIMITS: Self = Self::new(20, "voltage_limits", "Voltage limits");
+    /// Current limits per motor.
+    pub const CURRENT_LIMITS: Self = Self::new(30, "current_limits", "Current limits");
+    /// Which input commands the motors.
+    pub const PRIORITY_LEVELS: Self = Self::new(40, "priority_levels", "Priority levels");
+    /// Running a script after power up.
+    pub const SCRIPTING: Self = Self::new(50, "scripting", "Scripting");
+    /// Which pin is the encoder of a motor.
+    pub const ENCODERS: Self = Self::new(60, "encoders", "Encoders");
+    /// Inductance, resistance, acceleration and idle behaviour of a motor.
+    pub const MOTOR: Self = Self::new(70, "motor", "Motor");
+    /// Velocity gains and top speed.
+    pub const VELOCITY: Self = Self::new(80, "velocity", "Velocity");
+    /// Position gains and travel.
+    pub const POSITION: Self = Self::new(90, "position", "Position");
+    /// Speed and position error limits.
+    pub const ERROR_LIMITS: Self = Self::new(100, "error_limits", "Error limits");
+    /// Homing.
+    pub const HOMING: Self = Self::new(110, "homing", "Homing");
+    /// Input pins.
+    pub const PINS: Self = Self::new(120, "pins", "Pins");
+    /// Serial ports.
+    pub const STREAMS: Self = Self::new(130, "streams", "Serial ports");
+    /// CAN and I2C buses.
+    pub const BUSES: Self = Self::new(140, "buses", "CAN and I2C");
+    /// Digital outputs.
+    pub const OUTPUTS: Self = Self::new(150, "outputs", "Digital outputs");
+
+    /// A part with its place among the others, its name in files and its heading. Screens show the lower `order` first; those of this list end at 150.
+    pub const fn new(order: u8, key: &'static str, label: &'static str) -> Self {
+        Self { order, key, label }
     }
+
     /// The group's heading.
-    fn label;
+    pub const fn label(self) -> &'static str {
+        self.label
+    }
+}
+
+impl Serialize for Group {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.key)
+    }
 }
 
 /// Which of several alike things a row belongs to.

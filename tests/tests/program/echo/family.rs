@@ -23,6 +23,8 @@ use std::sync::LazyLock;
 use std::time::Duration;
 
 pub const ECHO: FamilyRef = FamilyRef::new(&Echo);
+/// A part of the settings that no other family has.
+pub const LOOP: Group = Group::new(200, "loop", "Loop");
 const GAIN: &str = "gain";
 const READ_GAIN: u8 = 1;
 const WRITE_GAIN: u8 = 2;
@@ -420,7 +422,7 @@ impl FamilySettings for EchoSettings {
             key: "loop.gain".to_owned(),
             pattern: "loop.gain",
             label: "Gain",
-            group: Group::Loop,
+            group: LOOP,
             instance: None,
             kind: Kind::Int,
             unit: Unit::None,

@@ -41,8 +41,8 @@ fn section_ui(ui: &mut Ui, model: &mut Model, height: f32, commands: &mut Comman
 /// What stands before and behind the rows of a part.
 pub fn around_rows_ui(ui: &mut Ui, general: &mut GeneralView<'_>, is_before: bool) {
     match general.section {
-        Section::Group(Group::Scripting) if is_before => autorun_ui(ui, general),
-        Section::Group(Group::Unit) if !is_before => bridge_ui(ui, general.unit()),
+        Section::Group(Group::SCRIPTING) if is_before => autorun_ui(ui, general),
+        Section::Group(Group::UNIT) if !is_before => bridge_ui(ui, general.unit()),
         Section::Group(_) | Section::One(..) | Section::Conflicts | Section::ClampTest => {}
     }
 }

@@ -10,7 +10,7 @@ impl General {
     /// The input pin that is looked at, from 1.
     pub fn pin(&self) -> Option<usize> {
         match self.section {
-            Section::One(Group::Pins, number) if !self.is_filtered() => Some(number),
+            Section::One(Group::PINS, number) if !self.is_filtered() => Some(number),
             Section::Group(_) | Section::One(..) | Section::Conflicts | Section::ClampTest => None,
         }
     }

@@ -22,7 +22,7 @@ const TTL1: (usize, &str) = (3, "I2C/TTL UART1");
 
 impl Default for Section {
     fn default() -> Self {
-        Self::Group(Group::Unit)
+        Self::Group(Group::UNIT)
     }
 }
 
@@ -30,11 +30,11 @@ impl Section {
     /// The section a row stands in.
     pub fn of(row: &Row) -> Self {
         match (&row.instance, row.group) {
-            (Some(instance), Group::Streams | Group::Pins | Group::Outputs) => {
+            (Some(instance), Group::STREAMS | Group::PINS | Group::OUTPUTS) => {
                 Self::One(row.group, instance.number)
             }
-            (_, Group::Buses) if row.key.starts_with("i2c.") => Self::One(Group::Streams, TTL1.0),
-            (_, Group::Buses) => Self::One(Group::Streams, RS232.0),
+            (_, Group::BUSES) if row.key.starts_with("i2c.") => Self::One(Group::STREAMS, TTL1.0),
+            (_, Group::BUSES) => Self::One(Group::STREAMS, RS232.0),
             _ => Self::Group(row.group),
         }
     }
@@ -52,8 +52,8 @@ pub fn sections(table: &SettingsTable) -> Vec<(Section, &str)> {
         let section = Section::of(row);
         if found.iter().all(|(known, _)| *known != section) {
             let name = match (section, &row.instance) {
-                (Section::One(Group::Streams, number), _) if number == RS232.0 => RS232.1,
-                (Section::One(Group::Streams, number), _) if number == TTL1.0 => TTL1.1,
+                (Section::One(Group::STREAMS, number), _) if number == RS232.0 => RS232.1,
+                (Section::One(Group::STREAMS, number), _) if number == TTL1.0 => TTL1.1,
                 (Section::One(..), Some(instance)) => instance.name.as_str(),
                 _ => row.group.label(),
             };
@@ -62,10 +62,10 @@ pub fn sections(table: &SettingsTable) -> Vec<(Section, &str)> {
     }
     // Ion Studio lists ports, buses, inputs and outputs in this order.
     let place = |section: Section| match section {
-        Section::Conflicts | Section::ClampTest => (0, Group::Unit),
+        Section::Conflicts | Section::ClampTest => (0, Group::UNIT),
         Section::Group(group) => (0, group),
-        Section::One(group @ Group::Streams, _) => (1, group),
-        Section::One(group @ Group::Pins, _) => (3, group),
+        Section::One(group @ Group::STREAMS, _) => (1, group),
+        Section::One(group @ Group::PINS, _) => (3, group),
         Section::One(group, _) => (4, group),
     };
     found.sort_by_key(|(section, _)| place(*section));

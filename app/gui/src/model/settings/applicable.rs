@@ -6,9 +6,9 @@ use brushwork_link::settings::{Group, Row, SettingValue};
 #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 pub(super) fn why_not(row: &Row, wanted: impl Fn(&str) -> Option<SettingValue>) -> Option<&'static str> {
     match row.group {
-        Group::Pins => pin(row, wanted),
-        Group::Streams => stream(row, wanted),
-        Group::Buses => bus(row, wanted),
+        Group::PINS => pin(row, wanted),
+        Group::STREAMS => stream(row, wanted),
+        Group::BUSES => bus(row, wanted),
         _ => None,
     }
 }

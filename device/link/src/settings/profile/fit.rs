@@ -103,7 +103,7 @@ impl<'f> Fitter<'f> {
 
     fn note_moved_pin(&mut self, row: &Row, there: &Row, moved: &mut Vec<usize>) {
         let (Some(old), Some(new)) = (&row.instance, &there.instance) else { return };
-        if row.group == Group::Pins && old.name != new.name && !moved.contains(&old.number) {
+        if row.group == Group::PINS && old.name != new.name && !moved.contains(&old.number) {
             moved.push(old.number);
             self.changes.push(format!("The settings of input {} go to {}.", old.name, new.name));
         }

@@ -140,7 +140,7 @@ impl FamilySettings for McpSettings {
 
     fn key_there(&self, fit: &Fit<'_>, row: &Row) -> Option<String> {
         match (&row.instance, row.group) {
-            (Some(instance), Group::Pins) => {
+            (Some(instance), Group::PINS) => {
                 let pin = fit::pin_place(fit, instance.number - 1)?;
                 Some(row.pattern.replace("{n}", &(pin + 1).to_string()))
             }

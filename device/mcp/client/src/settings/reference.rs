@@ -1,5 +1,6 @@
 //! The table as a reference: one entry per setting, whatever the controller, as text and as rows for JSON.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use brushwork_mcp_wire::models;
@@ -73,12 +74,10 @@ pub fn reference() -> Vec<ReferenceRow> {
 pub fn reference_text() -> String {
     let rows = reference();
     let mut text = String::from("Settings of the MCP and RoboClaw controllers\n");
-    for group in Group::ALL {
-        let mut rows = rows.iter().filter(|row| row.group == group).peekable();
-        if rows.peek().is_some() {
-            push_line(&mut text, format_args!("\n{}\n{}", group.label(), "-".repeat(group.label().len())));
-            rows.for_each(|row| push_row(&mut text, row));
-        }
+    let groups: BTreeSet<Group> = rows.iter().map(|row| row.group).collect();
+    for group in groups {
+        push_line(&mut text, format_args!("\n{}\n{}", group.label(), "-".repeat(group.label().len())));
+        rows.iter().filter(|row| row.group == group).for_each(|row| push_row(&mut text, row));
     }
     text.push_str("\nCommands that set something and are no settings\n");
     for (number, reason) in NOT_SETTINGS {

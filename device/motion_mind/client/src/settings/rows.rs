@@ -23,6 +23,10 @@ struct Shown {
     help: &'static str,
 }
 
+const LOOP: Group = Group::new(170, "loop", "PID");
+const FUNCTIONS: Group = Group::new(180, "functions", "FUNCTION");
+const FUNCTIONS_2: Group = Group::new(190, "functions2", "FUNCTION2");
+
 /// What its number looks like.
 #[derive(Clone, Copy)]
 enum Form {
@@ -37,64 +41,64 @@ const PLAIN: Form = Form::Raw(Unit::None);
 const MILLISECONDS: Form = Form::Scaled(Unit::Milliseconds, 3);
 
 macro_rules! shown {
-    ($($number:ident $key:literal $label:literal $group:ident, $form:expr; $help:literal;)*) => {
+    ($($number:ident $key:literal $label:literal $group:expr, $form:expr; $help:literal;)*) => {
         static SHOWN: &[Shown] = &[$(Shown {
-            register: number::$number, key: $key, label: $label, group: Group::$group, form: $form, help: $help,
+            register: number::$number, key: $key, label: $label, group: $group, form: $form, help: $help,
         }),*];
     };
 }
 
 shown! {
-    ADDRESS "register.address" "Address" Unit, PLAIN;
+    ADDRESS "register.address" "Address" Group::UNIT, PLAIN;
         "What the unit answers to, 1 to 98, when several share a bus. From 99 on it hears all and never \
          answers. Motion Mind manual 6.2, register 7.";
-    AMPSLIMIT "register.ampslimit" "Current limit" CurrentLimits, Form::Scaled(Unit::Amps, 2);
+    AMPSLIMIT "register.ampslimit" "Current limit" Group::CURRENT_LIMITS, Form::Scaled(Unit::Amps, 2);
         "Above this current the drive is reduced by the excess; 0 switches the limit off. Motion Mind \
          manual 3.10, register 28.";
-    PWMLIMIT "register.pwmlimit" "Drive limit" CurrentLimits, Form::Scaled(Unit::Percent, 1);
+    PWMLIMIT "register.pwmlimit" "Drive limit" Group::CURRENT_LIMITS, Form::Scaled(Unit::Percent, 1);
         "The most drive that the motor gets in either direction. Motion Mind manual 3.10, register 25.";
-    VELOCITYLIMIT "register.velocitylimit" "Velocity limit" Velocity, PLAIN;
+    VELOCITYLIMIT "register.velocitylimit" "Velocity limit" Group::VELOCITY, PLAIN;
         "Modes 0 to 3: the most by which the drive (of 1023) changes in one TIMER. Mode 4 with VELLIMIT: \
          the speed of moves in counts per PID loop of 5 ms. Motion Mind manual 6.2, register 1.";
-    TIMER "register.timer" "Timer" Velocity, Form::Scaled(Unit::Seconds, 3);
+    TIMER "register.timer" "Timer" Group::VELOCITY, Form::Scaled(Unit::Seconds, 3);
         "Time between two changes of the drive in the open-loop modes, and how long a button or limit input \
          must be steady. Motion Mind manual 6.2, register 9.";
-    VELOCITYFF "register.velocityff" "Velocity feed-forward" Velocity, PLAIN;
+    VELOCITYFF "register.velocityff" "Velocity feed-forward" Group::VELOCITY, PLAIN;
         "This over 255, times the commanded velocity in counts per loop, is added to the drive (of 1023). \
          Motion Mind manual 3.15, register 2.";
-    PTERM "register.pterm" "P" Loop, PLAIN;
+    PTERM "register.pterm" "P" LOOP, PLAIN;
         "Proportional gain of the PID. Motion Mind manual 3.13, register 4.";
-    ITERM "register.iterm" "I" Loop, PLAIN;
+    ITERM "register.iterm" "I" LOOP, PLAIN;
         "Integral gain of the PID, for the sum of errors of all loops. Motion Mind manual 3.13, register \
          5.";
-    DTERM "register.dterm" "D" Loop, PLAIN;
+    DTERM "register.dterm" "D" LOOP, PLAIN;
         "Derivative gain of the PID, for the change of the error in one loop. Motion Mind manual 3.13, \
          register 6.";
-    PIDSCALAR "register.pidscalar" "PID scalar" Loop, PLAIN;
+    PIDSCALAR "register.pidscalar" "PID scalar" LOOP, PLAIN;
         "The sum of the three terms is divided by 2 to this power: one more halves all gains. Motion Mind \
          manual 3.13, register 8.";
-    DEADBAND "register.deadband" "Dead band" Loop, PLAIN;
+    DEADBAND "register.deadband" "Dead band" LOOP, PLAIN;
         "With ENABLEDB: no drive within so many counts of the setpoint. Mode 1: steps of 4.88 mV around 2.5 \
          V that stop the motor. Motion Mind manual 6.2, register 26.";
-    VNLIMIT "register.vnlimit" "Negative virtual limit" Position, COUNTS;
+    VNLIMIT "register.vnlimit" "Negative virtual limit" Group::POSITION, COUNTS;
         "With VIRTLIMIT: at this position the motor stops on its way down. Motion Mind manual 6.2, register \
          23.";
-    VPLIMIT "register.vplimit" "Positive virtual limit" Position, COUNTS;
+    VPLIMIT "register.vplimit" "Positive virtual limit" Group::POSITION, COUNTS;
         "With VIRTLIMIT: at this position the motor stops on its way up. Motion Mind manual 6.2, register \
          24.";
-    RCMAX "register.rcmax" "R/C maximum" Pins, MILLISECONDS;
+    RCMAX "register.rcmax" "R/C maximum" Group::PINS, MILLISECONDS;
         "Width of the pulse that is full speed forward. Motion Mind manual 4.3, register 10.";
-    RCMIN "register.rcmin" "R/C minimum" Pins, MILLISECONDS;
+    RCMIN "register.rcmin" "R/C minimum" Group::PINS, MILLISECONDS;
         "Width of the pulse that is full speed reverse. Motion Mind manual 4.3, register 11.";
-    RCBAND "register.rcband" "R/C dead band" Pins, MILLISECONDS;
+    RCBAND "register.rcband" "R/C dead band" Group::PINS, MILLISECONDS;
         "Pulses this near to 1.5 ms stop the motor. Motion Mind manual 4.3, register 12.";
 }
 
 /// Every row, in screen order.
 pub fn rows() -> Vec<Row> {
     let registers = SHOWN.iter().filter_map(row_of);
-    let function = bit_rows(number::FUNCTION, "function.{bit}", Group::Functions, FUNCTION_BITS);
-    let function2 = bit_rows(number::FUNCTION2, "function2.{bit}", Group::Functions2, FUNCTION2_BITS);
+    let function = bit_rows(number::FUNCTION, "function.{bit}", FUNCTIONS, FUNCTION_BITS);
+    let function2 = bit_rows(number::FUNCTION2, "function2.{bit}", FUNCTIONS_2, FUNCTION2_BITS);
     let mut rows: Vec<Row> = registers.chain(function).chain(function2).chain(unused_bits()).collect();
     rows.sort_by_key(|row| row.group);
     rows
@@ -174,7 +178,7 @@ fn unused_bits() -> Option<Row> {
         key: "function2.unused".to_owned(),
         pattern: "function2.unused",
         label: "Unused bits",
-        group: Group::Functions2,
+        group: FUNCTIONS_2,
         instance: None,
         kind: Kind::Int,
         unit: Unit::None,

@@ -51,7 +51,7 @@ impl GeneralView<'_> {
     /// Outputs that are set to clamp over-voltage, from 1.
     pub fn clamping_outputs(&self) -> Vec<usize> {
         let Some(unit) = self.unit() else { return Vec::new() };
-        let rows = unit.table().group(Group::Outputs).filter(|row| row.pattern == "dout.{n}.action");
+        let rows = unit.table().group(Group::OUTPUTS).filter(|row| row.pattern == "dout.{n}.action");
         let clamps = |row: &&brushwork_link::settings::Row| {
             unit.on_controller(&row.key) == Some(SettingValue::Choice("over_voltage"))
         };

@@ -11,9 +11,9 @@ use brushwork_link::settings::SettingsTable;
 #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 pub fn function_text(table: &SettingsTable, get: Lookup<'_>, group: Group, number: usize) -> Option<String> {
     match group {
-        Group::Pins => pin(table, get, number),
-        Group::Streams => stream(table, get, number),
-        Group::Outputs => output(table, get, number),
+        Group::PINS => pin(table, get, number),
+        Group::STREAMS => stream(table, get, number),
+        Group::OUTPUTS => output(table, get, number),
         _ => None,
     }
 }
@@ -46,7 +46,7 @@ fn holder(table: &SettingsTable, get: Lookup<'_>, number: usize) -> Option<Strin
 }
 
 fn stream(table: &SettingsTable, get: Lookup<'_>, number: usize) -> Option<String> {
-    let row = table.group(Group::Streams).find(|row| {
+    let row = table.group(Group::STREAMS).find(|row| {
         row.pattern == "stream.{n}.type" && row.instance.as_ref().is_some_and(|one| one.number == number)
     })?;
     let kind = choice(get, &row.key)?;

@@ -127,7 +127,7 @@ pub fn modes(table: &SettingsTable, pin: usize, simulated: bool) -> Vec<(PinMode
 /// 1.9.8: "The settings will reset each time the mode is changed"). Rows that cannot be written here are left out.
 pub fn change_mode(table: &SettingsTable, pin: usize, mode: PinMode, simulated: bool) -> SettingsImage {
     let own = format!("pin.{pin}.");
-    let rows = table.group(Group::Pins).filter(|row| row.key.starts_with(&own));
+    let rows = table.group(Group::PINS).filter(|row| row.key.starts_with(&own));
     let value = |key: &str, default: SettingValue| match key.strip_prefix(&own) {
         Some("type") => SettingValue::Choice(mode.type_key()),
         Some("digital") => SettingValue::Bool(mode == PinMode::Digital),

@@ -14,128 +14,128 @@ use brushwork_link::settings::Coding;
 use brushwork_link::settings::Group;
 
 pub(crate) static ROWS: &[Template] = settings! {
-    motor("motor{n}.current.max_amps", "Maximum current", Group::CurrentLimits)
+    motor("motor{n}.current.max_amps", "Maximum current", Group::CURRENT_LIMITS)
         .fixed(Unit::Amps, AMPS, 2, Limits::Amps).default(DefaultValue::Highest);
         [Form::field(READ_CURRENT_LIMITS, SET_CURRENT_LIMITS, &["max"])]
         "The most current the motor may draw; power is cut back to hold it. Set it to what the motor \
          stands. MCP manual 1.2.10, command 133.";
-    motor("motor{n}.current.min_amps", "Minimum current", Group::CurrentLimits)
+    motor("motor{n}.current.min_amps", "Minimum current", Group::CURRENT_LIMITS)
         .fixed(Unit::Amps, MIN_AMPS, 2, Limits::NegativeAmps).default(DefaultValue::Lowest);
         [Form::field(READ_CURRENT_LIMITS, SET_CURRENT_LIMITS, &["min"]).only(GEN1, GEN2),
          Form::field(READ_CURRENT_LIMITS, SET_CURRENT_LIMITS, &["min"]).only(GEN3, GEN4)
             .with_coding(MIN_AMPS_MAGNITUDE)]
         "The most current the motor may push back into the battery while it brakes, as a negative number. \
          MCP manual 1.2.10, command 133.";
-    motor("motor{n}.encoder.pin", "Encoder input number", Group::Encoders)
+    motor("motor{n}.encoder.pin", "Encoder input number", Group::ENCODERS)
         .int(Unit::None, Limits::Steps(0, 255)).assumed_default(DefaultValue::EncoderPin)
         .only_on(Family::Mcp);
         [Form::field(READ_ENCODERS, SET_ENCODER, &["mode_m1", "mode_m2"]).writing(&["mode"])
             .simulated_only(PIN_NUMBERS)]
         "The number of the input signal that serves as this motor's encoder. Which number stands for \
          which pin is not published. MCP manual 1.2.10, command 92.";
-    motor("motor{n}.encoder.mode", "Encoder mode", Group::Encoders).int(Unit::None, Limits::Steps(0, 255))
+    motor("motor{n}.encoder.mode", "Encoder mode", Group::ENCODERS).int(Unit::None, Limits::Steps(0, 255))
         .assumed_default(DefaultValue::EncoderPin).only_on(Family::RoboClaw);
         [Form::field(READ_ENCODERS, SET_ENCODER, &["mode_m1", "mode_m2"]).writing(&["mode"])]
         "Bit 0: 0 for a quadrature encoder, 1 for an absolute one. Bit 7: use it with RC and analog \
          inputs too. Public clients, 2015-2025, command 92.";
-    motor("motor{n}.inductance_henries", "L", Group::Motor)
+    motor("motor{n}.inductance_henries", "L", Group::MOTOR)
         .fixed(Unit::Henries, INDUCTANCE_RESISTANCE, 6, U32_STEPS)
         .assumed_default(DefaultValue::Number(0.0));
         [Form::field(READ_L_R, SET_L_R, &["inductance"])]
         "Inductance of the motor winding. Together with a resistance other than 0 it turns duty commands \
          into current (torque) commands. MCP manual 1.2.11, command 128.";
-    motor("motor{n}.resistance_ohms", "R", Group::Motor)
+    motor("motor{n}.resistance_ohms", "R", Group::MOTOR)
         .fixed(Unit::Ohms, INDUCTANCE_RESISTANCE, 3, U32_STEPS).assumed_default(DefaultValue::Number(0.0));
         [Form::field(READ_L_R, SET_L_R, &["resistance"])]
         "Resistance of the motor winding and its leads. Together with an inductance other than 0 it turns \
          duty commands into current (torque) commands. MCP manual 1.2.11, command 128.";
-    motor("motor{n}.default_accel", "Default duty acceleration", Group::Motor)
+    motor("motor{n}.default_accel", "Default duty acceleration", Group::MOTOR)
         .fixed(Unit::PercentPerSecond, DUTY_ACCEL, 0, U32_STEPS)
         .assumed_default(DefaultValue::Number(ACCEL_DEFAULT_PERCENT_PER_S));
         [Form::field(READ_DEFAULT_ACCELS, SET_DEFAULT_ACCEL, &["accel_m1", "accel_m2"]).writing(&["accel"])]
         "How fast the duty rises for duty commands without an acceleration of their own, and for pulse \
          and analog inputs. 2000 %/s goes from full backward to full forward in 100 ms. MCP manual 2.4.9, \
          command 68.";
-    motor("motor{n}.default_decel", "Default duty deceleration", Group::Motor)
+    motor("motor{n}.default_decel", "Default duty deceleration", Group::MOTOR)
         .fixed(Unit::PercentPerSecond, DUTY_ACCEL, 0, U32_STEPS)
         .assumed_default(DefaultValue::Number(ACCEL_DEFAULT_PERCENT_PER_S));
         [Form::field(READ_DEFAULT_ACCELS, SET_DEFAULT_ACCEL, &["decel_m1", "decel_m2"]).only(GEN2, GEN4)
             .writing(&["decel"])]
         "How fast the duty falls for duty commands without an acceleration of their own. Public clients, \
          2016-2025, command 68.";
-    motor("motor{n}.default_speed", "Default speed", Group::Motor)
+    motor("motor{n}.default_speed", "Default speed", Group::MOTOR)
         .fixed(Unit::Percent, DEFAULT_SPEED, 1, Limits::Steps(0, 0x7FFF))
         .assumed_default(DefaultValue::Highest);
         [Form::field(READ_DEFAULT_SPEEDS, SET_DEFAULT_SPEED, &["speed_m1", "speed_m2"]).only(GEN3, GEN4)
             .writing(&["speed"])]
         "The share of the top speed that position commands without a speed of their own use. Public \
          clients, 2018-2025, command 70.";
-    motor("motor{n}.idle.delay_seconds", "Idle delay", Group::Motor)
+    motor("motor{n}.idle.delay_seconds", "Idle delay", Group::MOTOR)
         .fixed(Unit::Seconds, DECISECONDS, 1, Limits::Steps(0, 127))
         .assumed_default(DefaultValue::Number(0.0));
         [Form::bits(READ_PWM_IDLE, SET_PWM_IDLE, &["idle_m1", "idle_m2"], (0, 7)).only(GEN3, GEN4)]
         "How long after a stop the bridge goes idle. Public clients, 2018-2025, command 160.";
-    motor("motor{n}.idle.mode", "Idle mode", Group::Motor).int(Unit::None, Limits::Steps(0, 1))
+    motor("motor{n}.idle.mode", "Idle mode", Group::MOTOR).int(Unit::None, Limits::Steps(0, 1))
         .assumed_default(DefaultValue::Int(0));
         [Form::bits(READ_PWM_IDLE, SET_PWM_IDLE, &["idle_m1", "idle_m2"], (7, 1)).only(GEN3, GEN4)]
         "0 or 1: what the bridge does when idle; which number brakes is not published. Public clients, \
          2018-2025, command 160.";
-    motor("motor{n}.velocity.p", "Velocity P", Group::Velocity)
+    motor("motor{n}.velocity.p", "Velocity P", Group::VELOCITY)
         .fixed(Unit::Gain, VELOCITY_GAIN, 3, U32_STEPS).default(DefaultValue::Number(1.0));
         [Form::field(READ_VELOCITY_PID, SET_VELOCITY_PID, &["p"])]
         "Proportional gain of the speed loop: how hard it pushes against a speed error. Start at 1 and \
          raise it until the motor trembles, then take two thirds. MCP manual 2.4.6, command 28.";
-    motor("motor{n}.velocity.i", "Velocity I", Group::Velocity)
+    motor("motor{n}.velocity.i", "Velocity I", Group::VELOCITY)
         .fixed(Unit::Gain, VELOCITY_GAIN, 3, U32_STEPS).default(DefaultValue::Number(0.5));
         [Form::field(READ_VELOCITY_PID, SET_VELOCITY_PID, &["i"])]
         "Integral gain of the speed loop: takes away the error that remains. Raise it in steps of 0.1. \
          MCP manual 2.4.6, command 28.";
-    motor("motor{n}.velocity.d", "Velocity D", Group::Velocity)
+    motor("motor{n}.velocity.d", "Velocity D", Group::VELOCITY)
         .fixed(Unit::Gain, VELOCITY_GAIN, 3, U32_STEPS).default(DefaultValue::Number(0.25));
         [Form::field(READ_VELOCITY_PID, SET_VELOCITY_PID, &["d"])]
         "Derivative gain of the speed loop: damps overshoot and amplifies noise. Usually 0. MCP manual \
          2.4.6, command 28.";
-    motor("motor{n}.velocity.qpps", "QPPS", Group::Velocity).int(Unit::CountsPerSecond, U32_STEPS)
+    motor("motor{n}.velocity.qpps", "QPPS", Group::VELOCITY).int(Unit::CountsPerSecond, U32_STEPS)
         .default(DefaultValue::Int(44_000));
         [Form::field(READ_VELOCITY_PID, SET_VELOCITY_PID, &["qpps"])]
         "Speed of the motor at full duty, in encoder counts per second. Measure it before tuning; with 0 \
          neither speed nor position control moves. MCP manual 2.4.5, command 28.";
-    motor("motor{n}.position.p", "Position P", Group::Position)
+    motor("motor{n}.position.p", "Position P", Group::POSITION)
         .fixed(Unit::Gain, POSITION_GAIN, 3, U32_STEPS).default(DefaultValue::Number(0.0));
         [Form::field(READ_POSITION_PID, SET_POSITION_PID, &["p"])]
         "Proportional gain of the position loop: speed asked for per count of position error. 2000 is a \
          starting point. MCP manual 2.4.7, command 61.";
-    motor("motor{n}.position.i", "Position I", Group::Position)
+    motor("motor{n}.position.i", "Position I", Group::POSITION)
         .fixed(Unit::Gain, POSITION_GAIN, 3, U32_STEPS).default(DefaultValue::Number(0.0));
         [Form::field(READ_POSITION_PID, SET_POSITION_PID, &["i"])]
         "Integral gain of the position loop: closes the last counts, and makes a drive with backlash \
          hunt. Needs Max I. MCP manual 2.4.7, command 61.";
-    motor("motor{n}.position.d", "Position D", Group::Position)
+    motor("motor{n}.position.d", "Position D", Group::POSITION)
         .fixed(Unit::Gain, POSITION_GAIN, 3, U32_STEPS).default(DefaultValue::Number(0.0));
         [Form::field(READ_POSITION_PID, SET_POSITION_PID, &["d"])]
         "Derivative gain of the position loop: damps the overshoot; usually 5 to 20 times P. MCP manual \
          2.4.7, command 61.";
-    motor("motor{n}.position.max_i", "Max I", Group::Position).int(Unit::None, U32_STEPS)
+    motor("motor{n}.position.max_i", "Max I", Group::POSITION).int(Unit::None, U32_STEPS)
         .default(DefaultValue::Int(0));
         [Form::field(READ_POSITION_PID, SET_POSITION_PID, &["max_i"])]
         "The most the integral of the position loop may wind up. With 0 the I gain does nothing. MCP \
          manual 2.4.7, command 61.";
-    motor("motor{n}.position.deadzone", "Deadzone", Group::Position).int(Unit::Counts, U32_STEPS)
+    motor("motor{n}.position.deadzone", "Deadzone", Group::POSITION).int(Unit::Counts, U32_STEPS)
         .default(DefaultValue::Int(0));
         [Form::field(READ_POSITION_PID, SET_POSITION_PID, &["deadzone"])]
         "Position errors up to this count as none, so that backlash in the gears does not make the motor \
          hunt. MCP manual 2.4.7, command 61.";
-    motor("motor{n}.position.min", "Minimum position", Group::Position).int(Unit::Counts, I32_STEPS)
+    motor("motor{n}.position.min", "Minimum position", Group::POSITION).int(Unit::Counts, I32_STEPS)
         .default(DefaultValue::Int(0));
         [Form::field(READ_POSITION_PID, SET_POSITION_PID, &["min"])]
         "The lowest position a command can reach. While minimum and maximum are both 0, position commands \
          do not move. MCP manual 2.4.7, command 61.";
-    motor("motor{n}.position.max", "Maximum position", Group::Position).int(Unit::Counts, I32_STEPS)
+    motor("motor{n}.position.max", "Maximum position", Group::POSITION).int(Unit::Counts, I32_STEPS)
         .default(DefaultValue::Int(0));
         [Form::field(READ_POSITION_PID, SET_POSITION_PID, &["max"])]
         "The highest position a command can reach. While minimum and maximum are both 0, position \
          commands do not move. MCP manual 2.4.7, command 61.";
-    motor("motor{n}.error_limit.speed", "Speed error limit", Group::ErrorLimits)
+    motor("motor{n}.error_limit.speed", "Speed error limit", Group::ERROR_LIMITS)
         .int(Unit::CountsPerSecond, U32_STEPS).assumed_default(DefaultValue::Int(0));
         [Form::field(READ_SPEED_ERROR_LIMITS, SET_SPEED_ERROR_LIMITS, &["limit_m1", "limit_m2"])
             .only(GEN3, GEN3),
@@ -143,7 +143,7 @@ pub(crate) static ROWS: &[Template] = settings! {
             .only(GEN4, GEN4).with_range(U16_STEPS)]
         "Stops the motor with a fault when its speed is this far from the speed asked for; 0 switches the \
          check off. Public clients, 2018-2025, command 109.";
-    motor("motor{n}.error_limit.position", "Position error limit", Group::ErrorLimits)
+    motor("motor{n}.error_limit.position", "Position error limit", Group::ERROR_LIMITS)
         .int(Unit::Counts, U32_STEPS).assumed_default(DefaultValue::Int(0));
         [Form::field(READ_POSITION_ERROR_LIMITS, SET_POSITION_ERROR_LIMITS, &["limit_m1", "limit_m2"])
             .only(GEN3, GEN3),
@@ -152,12 +152,12 @@ pub(crate) static ROWS: &[Template] = settings! {
         "Stops the motor with a fault when its position is this far from the position asked for; 0 \
          switches the check off. It works only with accelerations set. Public clients, 2018-2025, command \
          112.";
-    motor("motor{n}.home.duty", "Homing duty", Group::Homing)
+    motor("motor{n}.home.duty", "Homing duty", Group::HOMING)
         .fixed(Unit::Percent, DEFAULT_SPEED, 1, Limits::Steps(0, 0x7FFF))
         .assumed_default(DefaultValue::Number(0.0));
         [Form::field(READ_HOMING, SET_HOMING, &["duty_m1", "duty_m2"]).only(GEN2, GEN3).writing(&["duty"])]
         "Duty with which the motor looks for its home switch. Public clients, 2016-2020, command 105.";
-    motor("motor{n}.home.timeout_seconds", "Homing time-out", Group::Homing)
+    motor("motor{n}.home.timeout_seconds", "Homing time-out", Group::HOMING)
         .fixed(Unit::Seconds, Coding::PerUnit(steps_of(scale::HOMING_TIMEOUT_S)), 2, U32_STEPS)
         .assumed_default(DefaultValue::Number(0.0));
         [Form::field(READ_HOMING, SET_HOMING, &["timeout_m1", "timeout_m2"]).only(GEN2, GEN4)

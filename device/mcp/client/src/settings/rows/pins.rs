@@ -93,12 +93,12 @@ pub(crate) static ROWS: &[Template] = settings! {
         [signal(&["potentiometer"]).only(GEN3, GEN4)]
         "Stored by newer firmware; what it does is not published. Public clients, 2018-2025, command \
          143.";
-    mcp("dout.{n}.action", "Action", Group::Outputs).per(Repeat::Douts).choice(DOUT_ACTIONS)
+    mcp("dout.{n}.action", "Action", Group::OUTPUTS).per(Repeat::Douts).choice(DOUT_ACTIONS)
         .default(DefaultValue::Key("none"));
         [Form::record(&[number::READ_DOUT_ACTIONS], &[number::SET_DOUT_ACTION], &["action"])]
         "What switches this output on: a motor running or reversing, over-voltage for a brake resistor, \
          over-temperature, or one of the indicators. MCP manual 1.9.9, command 137.";
-    mcp("dout.{n}.inverted", "Inverted", Group::Outputs).per(Repeat::Douts)
+    mcp("dout.{n}.inverted", "Inverted", Group::OUTPUTS).per(Repeat::Douts)
         .default(DefaultValue::Bool(false));
         [Form::hidden("No packet serial command for inverting an output is public: command 137 carries the \
          action only.")]
@@ -112,7 +112,7 @@ const ACTION_NUMBERS: &str = "The numbers of the actions in generation 1 are a g
 const FULL_OUTPUT: Limits = Limits::Steps(-scale::FULL_DUTY_RAW, scale::FULL_DUTY_RAW);
 
 const fn pin(key: &'static str, label: &'static str) -> Template {
-    Template::new(key, label, Group::Pins).per(Repeat::Pins).only_on(Family::Mcp)
+    Template::new(key, label, Group::PINS).per(Repeat::Pins).only_on(Family::Mcp)
 }
 
 const fn signal(fields: &'static [&'static str]) -> Form {

@@ -12,6 +12,8 @@ use crate::settings::template::{DefaultValue, Form, Limits, Repeat, Template, at
 use brushwork_link::settings::Coding;
 use brushwork_link::settings::Group;
 
+const PRODUCT_LINE: Group = Group::new(160, "robo_claw", "RoboClaw");
+
 pub(crate) static ROWS: &[Template] = settings! {
     roboclaw("roboclaw.pin.{n}", "Function").per(Repeat::RoboClawPins).int(Unit::None, U8_STEPS)
         .assumed_default(DefaultValue::Int(0));
@@ -119,7 +121,7 @@ const OUTPUT: Coding = Coding::PerUnit(scale::DEFAULT_SPEED_RAW / 100.0);
 const U16_STEPS: Limits = Limits::Steps(0, 0xFFFF);
 
 const fn roboclaw(key: &'static str, label: &'static str) -> Template {
-    Template::new(key, label, Group::ProductLine).only_on(Family::RoboClaw)
+    Template::new(key, label, PRODUCT_LINE).only_on(Family::RoboClaw)
 }
 
 const fn input(key: &'static str, label: &'static str) -> Template {
