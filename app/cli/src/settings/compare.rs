@@ -46,7 +46,7 @@ fn side(name: &SideName, controller: Option<&Controller<'_>>, other: Option<Side
         (SideName::Ram, Some(controller)) => {
             let report = controller.read()?;
             let name = format!("RAM of {}", controller.describe());
-            Ok(Side::new(name, controller.profile_of(&report, report.image.clone())))
+            Ok(Side::new(name, controller.profile_of(&report)))
         }
         (SideName::Eeprom, Some(controller)) => {
             let known = Store::of_user().eeprom(&controller.unit);
@@ -64,8 +64,7 @@ fn side(name: &SideName, controller: Option<&Controller<'_>>, other: Option<Side
             Ok(Side::new("defaults".to_owned(), profile))
         }
         (SideName::Default, Some(controller)) => {
-            let report = controller.read()?;
-            let ram = controller.profile_of(&report, report.image.clone());
+            let ram = controller.profile_of(&controller.read()?);
             Ok(Side::new("defaults".to_owned(), defaults_of(&ram)))
         }
         (SideName::Ram | SideName::Eeprom | SideName::Backup(None), None) => Err(Exit::Failed),

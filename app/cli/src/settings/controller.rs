@@ -7,13 +7,13 @@ use brushwork_link::device::{JobContext, JobReport};
 use brushwork_link::transport::list_ports;
 use brushwork_link::{
     DeviceHandle, Event, Failure, Identity, Job, JobEnding, JobTicket, Keeper, PollRate, Profile, ReadReport,
-    SettingsImage, SettingsTable, Subject, UnitAddress, WriteOptions,
+    SettingsTable, Subject, UnitAddress, WriteOptions,
 };
 
 use super::cut_short;
 use crate::interrupt::exit_of_interruption;
 use crate::{Client, ConnectArgs, Exit, Interrupt, say};
-use brushwork_core::keep::{self, Keeping, Store, UnitId};
+use brushwork_core::keep::{Keeping, Store, UnitId, profile_of};
 use brushwork_core::settings::{Act, Done};
 
 /// How long a cancelled job may take to end.
@@ -87,17 +87,10 @@ impl<'i> Controller<'i> {
         self.keeping.keeper(self.unit.clone(), &self.identity().version_text)
     }
 
-    /// Values as a profile of this controller.
-    pub fn profile_of(&self, report: &ReadReport, settings: SettingsImage) -> Profile {
-        Profile {
-            subject: *report.table.subject(),
-            firmware: self.identity().version_text.clone(),
-            address: self.address(),
-            date: keep::today(),
-            unit: self.unit.place.clone(),
-            note: String::new(),
-            settings,
-        }
+    /// What was read as a profile of this controller.
+    pub fn profile_of(&self, report: &ReadReport) -> Profile {
+        let (subject, version) = (*report.table.subject(), &self.identity().version_text);
+        profile_of(subject, self.address(), version, &self.unit.place, report.image.clone())
     }
 
     /// Reads every setting; says what could not be read, and what an act that was cut short has left of them.

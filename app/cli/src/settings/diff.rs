@@ -45,7 +45,7 @@ impl Side {
 
     fn of_controller(controller: &Controller<'_>) -> Result<Self, Exit> {
         let report = controller.read()?;
-        let profile = controller.profile_of(&report, report.image.clone());
+        let profile = controller.profile_of(&report);
         Ok(Self { name: controller.describe(), table: report.table, profile })
     }
 

@@ -16,7 +16,7 @@ pub fn export(args: &ExportArgs, out: &mut Output, interrupt: &Interrupt) -> Res
     file.check()?;
     let controller = Controller::connect(&args.connect, interrupt)?;
     let report = controller.read()?;
-    let profile = controller.profile_of(&report, report.image.clone());
+    let profile = controller.profile_of(&report);
     file.write(profile.to_json().as_bytes()).map_err(|error| match error {
         NewFileError::System { path, source } => {
             Exit::Failed.saying(ProfileFileError::Write { path, source }.to_string())

@@ -5,11 +5,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use brushwork_link::settings::{Act, OpenedProfile, Profile, Strictness};
+use brushwork_link::Identity;
+use brushwork_link::settings::{Act, OpenedProfile, Profile, ReadReport, Strictness};
 
 use super::sequence;
 use super::store::{KeepError, Store};
-use super::unit::UnitId;
+use super::unit::{UnitId, profile_of};
 
 const FOLDER: &str = "backups";
 /// Held while a backup is made; in the root of the store.
@@ -70,6 +71,24 @@ impl Store {
     /// Keeps a profile as a backup of a unit, made before an act. Old backups give way.
     pub fn back_up(&self, unit: &UnitId, act: Act, profile: &Profile) -> Result<Backup, KeepError> {
         self.back_up_at(SystemTime::now(), unit, act, profile)
+    }
+
+    /// Keeps all settings of a unit before its firmware is replaced.
+    pub fn back_up_for_firmware(
+        &self,
+        unit: &UnitId,
+        identity: &Identity,
+        report: &ReadReport,
+    ) -> Result<(Profile, Backup), KeepError> {
+        if !report.failures.is_empty() {
+            return Err(KeepError::NotWhole);
+        }
+        let (subject, address) = (*report.table.subject(), identity.unit_address());
+        let settings = report.image.clone();
+        let mut profile = profile_of(subject, address, &identity.version_text, &unit.place, settings);
+        profile.note = format!("before {}", Act::Firmware.label());
+        let backup = self.back_up(unit, Act::Firmware, &profile)?;
+        Ok((profile, backup))
     }
 
     /// As [`Store::back_up`], at the time that the computer's clock shows, whatever time it is.

@@ -21,7 +21,7 @@ pub use memory::{Wear, WearLevel};
 pub use store::{KeepError, Store};
 pub use today::today;
 pub use trial::TrialKeeper;
-pub use unit::UnitId;
+pub use unit::{UnitId, profile_of};
 pub use worker::Keeping;
 
 #[cfg(test)]

@@ -18,6 +18,9 @@ pub enum KeepError {
         folder::VARIABLE
     )]
     NoFolder,
+    /// A backup would lack settings.
+    #[error("Not all settings could be read, so the backup would not be whole.")]
+    NotWhole,
     /// A file could not be written; an older one of that name is as it was.
     #[error(
         "Writing {} failed: {source}. Check the free space and your rights there, or set {} to another folder.",

@@ -1,7 +1,9 @@
 //! Which controller something was kept of, as far as a computer can tell one from another.
 
 use brushwork_link::family::model_named;
-use brushwork_link::{Identity, PortInfo, Profile};
+use brushwork_link::{Identity, PortInfo, Profile, SettingsImage, Subject, UnitAddress};
+
+use super::today::today;
 
 /// How the names of files begin that are for one process alone.
 pub(super) const OWNER: &str = "process-";
@@ -80,4 +82,16 @@ impl UnitId {
              at this port counts as the same, this unit at another port as another; what others saved is not in it."
         }
     }
+}
+
+/// Values as a profile of now. `place` tells which unit it is, where that is known; `firmware` is what the unit says of itself.
+pub fn profile_of(
+    subject: Subject,
+    address: UnitAddress,
+    firmware: &str,
+    place: &str,
+    settings: SettingsImage,
+) -> Profile {
+    let (firmware, unit) = (firmware.trim_end().to_owned(), place.to_owned());
+    Profile { subject, firmware, address, date: today(), unit, note: String::new(), settings }
 }

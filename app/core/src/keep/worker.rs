@@ -11,7 +11,7 @@ use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 
 use super::store::{KeepError, Store};
 use super::today::today;
-use super::unit::UnitId;
+use super::unit::{UnitId, profile_of};
 
 /// Tasks that may wait. An act has two, one after the other.
 const QUEUE: usize = 64;
@@ -70,7 +70,7 @@ impl Keeping {
     /// Keeps what is done to one unit.
     pub fn keeper(&self, unit: UnitId, firmware: &str) -> Box<dyn Keeper> {
         Box::new(UnitKeeper {
-            origin: Origin { unit, firmware: firmware.trim_end().to_owned() },
+            origin: Origin { unit, firmware: firmware.to_owned() },
             worker: self.worker.clone(),
             answer: None,
             begun: None,
@@ -200,13 +200,5 @@ fn end(store: &Store, origin: &Origin, begun: &Begun, ending: &Ending) -> Result
 }
 
 fn profile(origin: &Origin, entry: &Entry, settings: SettingsImage) -> Profile {
-    Profile {
-        subject: *entry.table.subject(),
-        firmware: origin.firmware.clone(),
-        address: entry.address,
-        date: today(),
-        unit: origin.unit.place.clone(),
-        note: String::new(),
-        settings,
-    }
+    profile_of(*entry.table.subject(), entry.address, &origin.firmware, &origin.unit.place, settings)
 }

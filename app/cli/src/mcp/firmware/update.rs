@@ -2,10 +2,9 @@
 
 use std::io::{self, IsTerminal as _, Write as _};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant, SystemTime};
+use std::time::{Duration, Instant};
 
 use brushwork_link::device::RiskAccepted;
-use brushwork_link::settings::Act;
 use brushwork_link::{ConnectTarget, Event, Request, SystemClock};
 use brushwork_mcp_client::firmware::{Progress, RESUME_NOTE, Sent, risks, suit};
 use brushwork_mcp_wire::loader::{Image, SimulatedImage};
@@ -115,20 +114,14 @@ fn backup_file<'p>(path: &'p Path, args: &UpdateArgs) -> NewFile<'p> {
 /// Reads the settings into a profile. Without a whole backup nothing is erased.
 fn back_up(args: &UpdateArgs, controller: &Controller<'_>, out: &mut Output) -> Result<PathBuf, Exit> {
     let report = controller.read()?;
-    if !report.failures.is_empty() {
-        return Err(Exit::Refused
-            .saying("Not all settings could be read, so the backup would not be whole. Nothing was sent."));
-    }
-    let date = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
-    let mut profile = controller.profile_of(&report, report.image.clone());
-    profile.note = format!("before {}", Act::Firmware.label());
-    Store::of_user()
-        .back_up(&controller.unit, Act::Firmware, &profile)
-        .map_err(|error| Exit::Failed.saying(format!("{error} Nothing was sent.")))?;
+    let exit = if report.failures.is_empty() { Exit::Failed } else { Exit::Refused };
+    let (profile, _) = Store::of_user()
+        .back_up_for_firmware(&controller.unit, controller.identity(), &report)
+        .map_err(|error| exit.saying(format!("{error} Nothing was sent.")))?;
     let model = profile.subject.model.key;
     let path = args.backup.clone().unwrap_or_else(|| {
         // Colons do not go into file names everywhere.
-        let name = format!("backup-{model}-{}.json", date.replace(':', ""));
+        let name = format!("backup-{model}-{}.json", profile.date.replace(':', ""));
         args.file.parent().unwrap_or_else(|| Path::new("")).join(name)
     });
     backup_file(&path, args)

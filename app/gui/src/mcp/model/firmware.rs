@@ -4,9 +4,8 @@
 use std::path::Path;
 use std::time::Duration;
 
-use brushwork_link::UnitAddress;
 use brushwork_link::device::{Event, Identity, Job, JobTicket, QueuedJob};
-use brushwork_link::settings::{Act, Profile, ReadReport, Subject, diff, read_all};
+use brushwork_link::settings::{Profile, ReadReport, Subject, diff, read_all};
 use brushwork_link::transport::Stream;
 use brushwork_mcp_client::firmware::{Progress, RESUME_NOTE, Sent, risks, suit};
 use brushwork_mcp_wire::loader::{Image, SimulatedImage};
@@ -14,7 +13,7 @@ use brushwork_mcp_wire::models::{self, Model};
 use crossbeam_channel::{Receiver, bounded};
 
 use crate::files::{FileAction, FileAnswer, FileDialog, FileKind};
-use brushwork_core::keep::{Store, UnitId, today};
+use brushwork_core::keep::{Store, UnitId};
 use brushwork_core::session::firmware::{LoaderPlace, Upload, UploadEvent};
 
 /// How long reading all settings may take.
@@ -368,11 +367,10 @@ fn back_up(
 ) -> Result<(QueuedJob, Receiver<Result<Kept, String>>), String> {
     let (read, to_keep) = bounded::<Result<ReadReport, String>>(1);
     let (sender, kept) = bounded(1);
-    let firmware = identity.version_text.clone();
-    let address = identity.unit_address();
+    let identity = identity.clone();
     let keep = move || {
         let report = to_keep.recv_timeout(READ_LIMIT).map_err(|_| "The settings were not read.".to_owned());
-        let done = report.and_then(|report| keep(report?, firmware, address, &unit, &store));
+        let done = report.and_then(|report| keep(&report?, &identity, &unit, &store));
         // Whoever closed the window does not want it any more.
         let _ = sender.send(done);
     };
@@ -388,24 +386,12 @@ fn back_up(
     Ok((job.queued().0, kept))
 }
 
-fn keep(
-    report: ReadReport,
-    firmware: String,
-    address: UnitAddress,
-    unit: &UnitId,
-    store: &Store,
-) -> Result<Kept, String> {
-    if let Some(unread) = report.failures.first() {
-        return Err(format!(
-            "Not all settings could be read, so the backup would not be whole. {}",
-            unread.failure
-        ));
-    }
-    let note = format!("before {}", Act::Firmware.label());
-    let subject = *report.table.subject();
-    let (date, settings) = (today(), report.image);
-    let profile = Profile { subject, firmware, address, date, unit: unit.place.clone(), note, settings };
-    let backup = store.back_up(unit, Act::Firmware, &profile).map_err(|error| error.to_string())?;
+fn keep(report: &ReadReport, identity: &Identity, unit: &UnitId, store: &Store) -> Result<Kept, String> {
+    let kept = store.back_up_for_firmware(unit, identity, report);
+    let (profile, backup) = kept.map_err(|error| match report.failures.first() {
+        Some(unread) => format!("{error} {}", unread.failure),
+        None => error.to_string(),
+    })?;
     Ok(Kept { profile, title: backup.title() })
 }
 

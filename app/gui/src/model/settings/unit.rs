@@ -4,6 +4,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use brushwork_core::keep;
 use brushwork_core::settings::write_options;
 use brushwork_link::UnitAddress;
 use brushwork_link::device::Identity;
@@ -518,14 +519,6 @@ impl UnitSettings {
 
     /// Values as a profile of this controller.
     pub(super) fn profile_of(&self, settings: SettingsImage) -> Profile {
-        Profile {
-            subject: *self.table.subject(),
-            firmware: self.firmware.clone(),
-            address: self.unit_address,
-            date: brushwork_core::keep::today(),
-            unit: String::new(),
-            note: String::new(),
-            settings,
-        }
+        keep::profile_of(*self.table.subject(), self.unit_address, &self.firmware, "", settings)
     }
 }
