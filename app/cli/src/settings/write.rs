@@ -55,10 +55,9 @@ impl Wanted {
 
     /// How they are written; refused where what was typed cannot be.
     fn options(&self, controller: &Controller<'_>, ram: &ReadReport) -> Result<WriteOptions, Exit> {
-        let typed = self.changes.iter().filter(|(key, value)| self.taken.get(key) != Some(*value));
-        let typed = typed.map(|(key, value)| (key.to_owned(), value)).collect();
+        let is_taken = |key: &str, value| self.taken.get(key) == Some(value);
         let options = controller.write_options();
-        write_options(&ram.table, &ram.image, &self.taken, &typed, options).map_err(cannot_be)
+        write_options(&ram.table, &ram.image, &self.changes, is_taken, options).map_err(cannot_be)
     }
 }
 

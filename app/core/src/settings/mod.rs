@@ -6,24 +6,27 @@ mod act;
 pub use act::{Act, Done, counted};
 
 use brushwork_link::settings::{Journal, OpenedProfile, Refusal, plan};
-use brushwork_link::{Profile, SettingsImage, SettingsTable, WriteOptions};
+use brushwork_link::{Profile, SettingValue, SettingsImage, SettingsTable, WriteOptions};
 
-/// How values are written of which some were read from a unit once (`taken`) and others typed. What was read may be out of range and
-/// is written as it was; what somebody types has to be right beside it.
+/// How values are written of which some were read from a unit once (`is_taken`) and others typed. What was read may be out of range
+/// and is written as it was; what somebody types has to be right beside it.
 ///
 /// # Errors
 /// Every reason why something that was typed cannot be written.
 pub fn write_options(
     table: &SettingsTable,
     ram: &SettingsImage,
-    taken: &SettingsImage,
-    typed: &SettingsImage,
+    wanted: &SettingsImage,
+    is_taken: impl Fn(&str, SettingValue) -> bool,
     options: WriteOptions,
 ) -> Result<WriteOptions, Vec<Refusal>> {
+    let owned = wanted.iter().map(|(key, value)| (key.to_owned(), value));
+    let (taken, typed): (Vec<_>, Vec<_>) = owned.partition(|(key, value)| is_taken(key, *value));
     if taken.is_empty() {
         return Ok(options);
     }
-    plan(table, &merged(ram, taken), typed, options)?;
+    let (taken, typed) = (taken.into_iter().collect(), typed.into_iter().collect());
+    plan(table, &merged(ram, &taken), &typed, options)?;
     Ok(WriteOptions { as_read: true, ..options })
 }
 

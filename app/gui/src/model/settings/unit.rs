@@ -343,13 +343,10 @@ impl UnitSettings {
     /// How values are written: those that were taken over from a profile, a backup or a journal as they are.
     pub(super) fn options(&self, wanted: &SettingsImage, own_stream: Option<Stream>) -> WriteOptions {
         let options = WriteOptions { own_stream, simulated: self.is_simulated, as_read: false };
-        let (taken, typed): (Vec<_>, Vec<_>) = wanted
-            .iter()
-            .map(|(key, value)| (key.to_owned(), value))
-            .partition(|(key, value)| self.taken.contains(key) && self.edits.get(key) == Some(*value));
-        let (taken, typed) = (taken.into_iter().collect(), typed.into_iter().collect());
+        let is_taken =
+            |key: &str, value| self.taken.contains(key) && self.edits.get(key) == Some(value);
         // What cannot be written is refused by the plan, which tells every reason.
-        write_options(&self.table, &self.held_image(), &taken, &typed, options).unwrap_or(options)
+        write_options(&self.table, &self.held_image(), wanted, is_taken, options).unwrap_or(options)
     }
 
     pub fn saved(&self) -> Saved {

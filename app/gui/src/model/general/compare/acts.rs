@@ -1,11 +1,11 @@
 //! What General Settings does to set two copies side by side.
 
-use brushwork_link::settings::{CopiedMotor, OpenedProfile, SettingsImage, copy_motor, diff};
+use brushwork_link::settings::{CopiedMotor, SettingsImage, copy_motor, diff};
 
 use super::{Comparison, Fitted, Side, Take};
 use crate::model::general::GeneralView;
 use brushwork_core::keep::Backup;
-use brushwork_core::settings::known_defaults;
+use brushwork_core::settings::{fitted, known_defaults};
 
 impl GeneralView<'_> {
     /// What a side is called.
@@ -52,12 +52,12 @@ impl GeneralView<'_> {
         let Some((backup, unit)) = backup.zip(self.unit()) else {
             return Err("The backup is not there any more.".to_owned());
         };
-        let OpenedProfile { profile, upgraded, corrected } =
-            backup.open().map_err(|error| error.to_string())?;
-        let fitted = profile.fitted_to(unit.table());
-        let corrected = corrected.iter().map(ToString::to_string);
-        let changes = upgraded.into_iter().chain(corrected).chain(fitted.changes).collect();
-        Ok(Fitted { image: fitted.profile.settings, changes })
+        let opened = backup.open().map_err(|error| error.to_string())?;
+        let corrected: Vec<String> = opened.corrected.iter().map(ToString::to_string).collect();
+        let upgrades = opened.upgraded.len();
+        let (profile, mut changes) = fitted(opened, unit.table());
+        changes.splice(upgrades..upgrades, corrected);
+        Ok(Fitted { image: profile.settings, changes })
     }
 
     /// The two sides that are chosen, side by side.
