@@ -122,12 +122,11 @@ impl<'i> Controller<'i> {
     pub fn act(
         &self,
         name: &str,
-        mut act: Act,
+        act: Act,
         table: &SettingsTable,
         options: WriteOptions,
     ) -> Result<Finished<Result<Done, Failure>>, Exit> {
-        let (table, mut keeper) = (table.clone(), self.keeper());
-        self.run(name, act.limit(), move |wire| act.run(wire, &table, options, &mut *keeper))
+        self.run(name, act.limit(), act.work(table.clone(), options, self.keeper()))
     }
 
     /// Runs work on the device thread and waits for its end. Ctrl-C cancels it; what it had to say by then

@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use brushwork_link::device::JobContext;
 use brushwork_link::settings::{
     DefaultsReport, Known, SaveReport, WriteError, WriteReport, defaults_kept, read_all, read_some,
     reload_kept, save_kept, write_kept_knowing,
@@ -75,11 +76,17 @@ impl Act {
         }
     }
 
-    /// Does it.
-    ///
-    /// # Errors
-    /// Nothing was done, or the controller does not answer.
-    pub fn run(
+    /// What a job does to do it. It fails where nothing was done, or the controller does not answer.
+    pub fn work(
+        mut self,
+        table: SettingsTable,
+        options: WriteOptions,
+        mut keeper: Box<dyn Keeper>,
+    ) -> impl FnMut(&mut JobContext<'_>) -> Result<Done, Failure> + Send + 'static {
+        move |wire| self.run(wire, &table, options, &mut *keeper)
+    }
+
+    fn run(
         &mut self,
         wire: &mut dyn Wire,
         table: &SettingsTable,

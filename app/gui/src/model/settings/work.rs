@@ -81,16 +81,15 @@ impl Running {
 
 /// The job that does an act on a unit.
 pub(super) fn begin(
-    mut act: Act,
+    act: Act,
     unit: UnitKey,
     origin: Origin,
     table: SettingsTable,
     options: WriteOptions,
-    mut keeper: Box<dyn Keeper>,
+    keeper: Box<dyn Keeper>,
 ) -> (QueuedJob, Running) {
     let (name, limit) = (act.name(), act.limit());
-    let job = Job::new(name, limit, move |context| act.run(context, &table, options, &mut *keeper));
-    running(unit, origin, job)
+    running(unit, origin, Job::new(name, limit, act.work(table, options, keeper)))
 }
 
 /// The job that opens or closes an input: one journal from the one to the other.
