@@ -3,7 +3,7 @@
 use brushwork_link::settings::ReadReport;
 
 use crate::output::say;
-use brushwork_core::keep::{OpenJournal, Store, UnitId};
+use brushwork_core::keep::{OpenJournal, Store, UnitId, aftermaths};
 
 /// More sentences than this are told by `unfinished` alone.
 const TOLD_IN_PASSING: usize = 30;
@@ -11,8 +11,7 @@ const TOLD_IN_PASSING: usize = 30;
 /// Says on standard error what an act that was cut short has left of the settings just read.
 pub fn tell(unit: &UnitId, ram: &ReadReport) {
     let journals = journals(unit);
-    for open in &journals {
-        let aftermath = open.aftermath(&ram.table, &ram.image);
+    for aftermath in aftermaths(&journals, &ram.table, &ram.image) {
         say(aftermath.headline());
         let sentences = aftermath.sentences(&ram.table);
         sentences.iter().take(TOLD_IN_PASSING).for_each(|sentence| say(format!("  {sentence}")));

@@ -8,7 +8,7 @@ use super::controller::Controller;
 use super::cut_short::journals;
 use super::write::{self, Wanted};
 use crate::{Exit, Interrupt, Output};
-use brushwork_core::keep::{OpenJournal, Store};
+use brushwork_core::keep::{OpenJournal, Store, aftermaths};
 use brushwork_core::settings::remedy;
 
 /// Shows what was cut short, and settles it when asked to.
@@ -16,8 +16,7 @@ pub fn run(args: &UnfinishedArgs, out: &mut Output, interrupt: &Interrupt) -> Re
     let controller = Controller::connect(&args.connect, interrupt)?;
     let ram = controller.read_quietly()?;
     let journals = journals(&controller.unit);
-    let aftermaths: Vec<Aftermath> =
-        journals.iter().map(|open| open.aftermath(&ram.table, &ram.image)).collect();
+    let aftermaths = aftermaths(&journals, &ram.table, &ram.image);
     show(args, &ram, &aftermaths, out)?;
     // The newest alone is finished or undone; the ones before it were overtaken by it.
     let Some(newest) = journals.last() else { return Ok(Exit::Done) };
@@ -32,9 +31,7 @@ pub fn run(args: &UnfinishedArgs, out: &mut Output, interrupt: &Interrupt) -> Re
 }
 
 fn close(journals: &[OpenJournal]) -> Result<Exit, Exit> {
-    for open in journals {
-        Store::of_user().close_journal(&open.path).map_err(|error| Exit::Failed.saying(error))?;
-    }
+    Store::of_user().close_journals(journals).map_err(|error| Exit::Failed.saying(error))?;
     Ok(Exit::Done)
 }
 

@@ -24,11 +24,9 @@ pub struct OpenJournal {
     pub journal: Journal,
 }
 
-impl OpenJournal {
-    /// What the controller's settings say of it.
-    pub fn aftermath(&self, table: &SettingsTable, now: &SettingsImage) -> Aftermath {
-        self.journal.aftermath(table, now)
-    }
+/// What the controller's settings say of what was cut short, oldest first.
+pub fn aftermaths(journals: &[OpenJournal], table: &SettingsTable, now: &SettingsImage) -> Vec<Aftermath> {
+    journals.iter().map(|open| open.journal.aftermath(table, now)).collect()
 }
 
 impl Store {
@@ -66,6 +64,11 @@ impl Store {
             }
             _ => Ok(()),
         }
+    }
+
+    /// What was cut short is settled, or was told: all of its journals are closed, as far as that can be.
+    pub fn close_journals(&self, journals: &[OpenJournal]) -> Result<(), KeepError> {
+        journals.iter().fold(Ok(()), |so_far, open| so_far.and(self.close_journal(&open.path)))
     }
 
     /// The journals of a unit that were not closed, oldest first, and what is wrong with those that cannot be read.

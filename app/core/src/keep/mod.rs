@@ -16,7 +16,7 @@ mod unit;
 mod worker;
 
 pub use backups::Backup;
-pub use journals::OpenJournal;
+pub use journals::{OpenJournal, aftermaths};
 pub use memory::{Wear, WearLevel};
 pub use store::{KeepError, Store};
 pub use today::today;

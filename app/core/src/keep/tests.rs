@@ -51,7 +51,7 @@ fn a_write_leaves_a_backup_and_its_journal_is_open_until_it_ends() {
     let store = keeping.store().clone();
     let (journals, faults) = store.open_journals(&unit());
     assert_eq!((journals.len(), faults.len()), (1, 0));
-    let aftermath = journals[0].aftermath(&table(), &table().default_image());
+    let aftermath = &aftermaths(&journals, &table(), &table().default_image())[0];
     assert_eq!((aftermath.old.len(), aftermath.new.len()), (1, 0), "{aftermath:?}");
 
     keeper.end(Ending::Known);

@@ -6,7 +6,7 @@ use brushwork_link::{Identity, Keeper, PortInfo, Profile};
 use super::Came;
 use crate::model::settings::unit_key::UnitKey;
 use crate::model::settings::units::Settings;
-use brushwork_core::keep::{Backup, Keeping, UnitId, Wear};
+use brushwork_core::keep::{Backup, Keeping, UnitId, Wear, aftermaths};
 
 impl Settings {
     /// Where backups and journals go from now on; the ports tell serial numbers.
@@ -76,7 +76,7 @@ impl Settings {
     pub fn aftermaths(&self) -> Vec<Aftermath> {
         let Some(unit) = self.unit() else { return Vec::new() };
         let Some(ram) = unit.ram() else { return Vec::new() };
-        self.kept.unfinished.iter().map(|open| open.aftermath(unit.table(), ram)).collect()
+        aftermaths(&self.kept.unfinished, unit.table(), ram)
     }
 
     /// What was begun last of what was cut short.
@@ -87,10 +87,8 @@ impl Settings {
     /// What was cut short is settled, or was told.
     pub fn close_unfinished(&mut self) {
         let Some(keeping) = &self.kept.keeping else { return };
-        for open in self.kept.unfinished.drain(..) {
-            // A journal that cannot be removed is told once more at the next connection.
-            let _ = keeping.store().close_journal(&open.path);
-        }
+        // A journal that cannot be removed is told once more at the next connection.
+        let _ = keeping.store().close_journals(&std::mem::take(&mut self.kept.unfinished));
     }
 
     /// Takes in what work came to: what was cut short may be settled by it, or has to be told now, which is true then.
