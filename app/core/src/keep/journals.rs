@@ -68,7 +68,8 @@ impl Store {
 
     /// What was cut short is settled, or was told: all of its journals are closed, as far as that can be.
     pub fn close_journals(&self, journals: &[OpenJournal]) -> Result<(), KeepError> {
-        journals.iter().fold(Ok(()), |so_far, open| so_far.and(self.close_journal(&open.path)))
+        let closed: Vec<_> = journals.iter().map(|open| self.close_journal(&open.path)).collect();
+        closed.into_iter().collect()
     }
 
     /// The journals of a unit that were not closed, oldest first, and what is wrong with those that cannot be read.

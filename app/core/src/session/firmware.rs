@@ -3,13 +3,12 @@
 //! The device thread has let go of the line by then ([`Event::LoaderEntered`](brushwork_link::device::Event::LoaderEntered)). A real unit
 //! comes back as another USB device, so its port is looked for by name; everything else is opened again as it was.
 
-use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use brushwork_link::transport::{ConnectTarget, PortInfo, Transport, list_ports};
-use brushwork_link::{Clock, Failure};
+use brushwork_link::{Failure, SystemClock};
 use brushwork_mcp_client::firmware::{Progress, Sent, send};
 use brushwork_mcp_wire::loader::Image;
 use crossbeam_channel::{Receiver, Sender, bounded};
@@ -109,17 +108,20 @@ impl Upload {
     /// Starts to send `image`.
     ///
     /// # Errors
-    /// The system gives no thread.
-    pub fn start(place: LoaderPlace, image: Image, clock: Arc<dyn Clock>) -> io::Result<Self> {
+    /// The system gives no thread: a sentence without its full stop.
+    pub fn start(place: LoaderPlace, image: Image) -> Result<Self, String> {
         let (events, receiver) = bounded(64);
         let cancelled = Arc::new(AtomicBool::new(false));
         let seen = Arc::clone(&cancelled);
         let work = move || {
-            let ended = run(&place, &image, clock.as_ref(), &seen, &events);
+            let ended = run(&place, &image, &seen, &events);
             // Nobody may be left to hear it.
             let _ = events.send(UploadEvent::Ended(ended));
         };
-        std::thread::Builder::new().name("firmware".to_owned()).spawn(work)?;
+        let thread = std::thread::Builder::new().name("firmware".to_owned());
+        thread.spawn(work).map_err(|error| {
+            format!("Could not start the thread that sends the firmware: {error}. Nothing was erased")
+        })?;
         Ok(Self { events: receiver, cancelled })
     }
 
@@ -138,14 +140,13 @@ impl Upload {
 fn run(
     place: &LoaderPlace,
     image: &Image,
-    clock: &dyn Clock,
     cancelled: &AtomicBool,
     events: &Sender<UploadEvent>,
 ) -> Result<Sent, Failure> {
     let goes_on = || !cancelled.load(Ordering::SeqCst);
     let mut transport = place.open(&goes_on)?;
     let mut reported = None;
-    send(transport.as_mut(), clock, image, &mut |progress| {
+    send(transport.as_mut(), &*SystemClock::shared(), image, &mut |progress| {
         // A window that does not look misses some pages, never the end.
         if reported != Some(progress) {
             let _ = events.try_send(UploadEvent::Progress(progress));

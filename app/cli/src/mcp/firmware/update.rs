@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use brushwork_link::device::RiskAccepted;
-use brushwork_link::{ConnectTarget, Event, Request, SystemClock};
-use brushwork_mcp_client::firmware::{Progress, RESUME_NOTE, Sent, risks, suit};
-use brushwork_mcp_wire::loader::{Image, SimulatedImage};
+use brushwork_link::{ConnectTarget, Event, Request};
+use brushwork_mcp_client::firmware::{Progress, RESUME_NOTE, Sent, risks, suit, suit_model};
+use brushwork_mcp_wire::loader::Image;
 use brushwork_mcp_wire::models;
 use crossbeam_channel::RecvTimeoutError;
 
@@ -31,8 +31,7 @@ pub fn run(args: &UpdateArgs, out: &mut Output, interrupt: &Interrupt) -> Result
     if args.resume {
         let image = resumed_image(args, bytes, &target)?;
         accept(args, is_simulated(args, &target), &|| interrupted(interrupt))?;
-        let upload = start(LoaderPlace::of(&target, None), image)?;
-        let sent = follow(&upload, interrupt)?;
+        let sent = send(LoaderPlace::of(&target, None), image, interrupt)?;
         return done(&sent, None, args, out);
     }
     if let Some(path) = &args.backup {
@@ -44,7 +43,7 @@ pub fn run(args: &UpdateArgs, out: &mut Output, interrupt: &Interrupt) -> Result
     let backup = back_up(args, &controller, out)?;
     let place = LoaderPlace::of(&target, controller.client.simulation());
     enter_loader(&controller, interrupt)?;
-    let sent = follow(&start(place, image)?, interrupt)?;
+    let sent = send(place, image, interrupt)?;
     done(&sent, Some(&backup), args, out)
 }
 
@@ -62,13 +61,7 @@ fn resumed_image(args: &UpdateArgs, bytes: Vec<u8>, target: &ConnectTarget) -> R
     let Some(model) = models::lookup(name) else {
         return Err(Exit::Usage.saying(format!("\"{name}\" is no model. `brushwork sim --list` names them.")));
     };
-    if SimulatedImage::is_marked(&bytes) && !is_simulated(args, target) {
-        return Err(not_sent(
-            args,
-            &"it was made for simulated controllers and would leave a real one without firmware",
-        ));
-    }
-    Image::new(bytes, model.family).map_err(|error| not_sent(args, &error))
+    suit_model(bytes, model, is_simulated(args, target)).map_err(|error| not_sent(args, &error))
 }
 
 fn not_sent(args: &UpdateArgs, why: &dyn std::fmt::Display) -> Exit {
@@ -151,16 +144,9 @@ fn enter_loader(controller: &Controller<'_>, interrupt: &Interrupt) -> Result<()
     ))
 }
 
-fn start(place: LoaderPlace, image: Image) -> Result<Upload, Exit> {
-    Upload::start(place, image, SystemClock::shared()).map_err(|error| {
-        Exit::Failed.saying(format!(
-            "Could not start the thread that sends the firmware: {error}. Nothing was erased."
-        ))
-    })
-}
-
-/// Shows how far it is, until it ends. Ctrl-C counts only before the erase.
-fn follow(upload: &Upload, interrupt: &Interrupt) -> Result<Sent, Exit> {
+/// Sends it and shows how far it is, until it ends. Ctrl-C counts only before the erase.
+fn send(place: LoaderPlace, image: Image, interrupt: &Interrupt) -> Result<Sent, Exit> {
+    let upload = Upload::start(place, image).map_err(|why| Exit::Failed.saying(format!("{why}.")))?;
     let mut shown = String::new();
     let mut warned = false;
     let mut erasing = false;
@@ -176,7 +162,7 @@ fn follow(upload: &Upload, interrupt: &Interrupt) -> Result<Sent, Exit> {
         }
         match upload.events().recv_timeout(SLICE) {
             Ok(UploadEvent::Progress(progress)) => {
-                erasing |= progress != Progress::Greeting;
+                erasing |= !progress.is_harmless();
                 tell(progress, &mut shown);
             }
             Ok(UploadEvent::Ended(Ok(sent))) => return Ok(sent),
@@ -212,11 +198,7 @@ fn tell(progress: Progress, shown: &mut String) {
 }
 
 fn done(sent: &Sent, backup: Option<&Path>, args: &UpdateArgs, out: &mut Output) -> Result<Exit, Exit> {
-    out.line(format!(
-        "{} pages were sent and confirmed in {:.1} s. The controller restarts.",
-        sent.pages,
-        sent.took.as_secs_f64()
-    ))?;
+    out.line(format!("{} The controller restarts.", sent.sentence()))?;
     let connect = &args.connect.connect;
     if let Some(backup) = backup {
         let backup = backup.display();

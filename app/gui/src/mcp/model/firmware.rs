@@ -7,8 +7,8 @@ use std::time::Duration;
 use brushwork_link::device::{Event, Identity, Job, JobTicket, QueuedJob};
 use brushwork_link::settings::{Profile, ReadReport, Subject, diff, read_all};
 use brushwork_link::transport::Stream;
-use brushwork_mcp_client::firmware::{Progress, RESUME_NOTE, Sent, risks, suit};
-use brushwork_mcp_wire::loader::{Image, SimulatedImage};
+use brushwork_mcp_client::firmware::{Progress, RESUME_NOTE, Sent, Unsuitable, risks, suit, suit_model};
+use brushwork_mcp_wire::loader::Image;
 use brushwork_mcp_wire::models::{self, Model};
 use crossbeam_channel::{Receiver, bounded};
 
@@ -118,7 +118,7 @@ impl Stage {
     pub fn can_be_cancelled(&self) -> bool {
         match self {
             Self::BackingUp { .. } => true,
-            Self::Sending { progress, .. } => *progress == Progress::Greeting,
+            Self::Sending { progress, .. } => progress.is_harmless(),
             Self::Idle | Self::Entering { .. } | Self::Done(_) | Self::Failed(_) => false,
         }
     }
@@ -180,12 +180,12 @@ impl Firmware {
     /// Begins to send the image to a unit that waits in its loader.
     pub fn resume(&mut self, place: LoaderPlace, simulated: bool) -> Result<(), String> {
         let model = self.resumed_model.ok_or("Choose the model that waits in its loader.")?;
-        let bytes = self.file()?;
-        if SimulatedImage::is_marked(&bytes) && !simulated {
-            return Err("The file is not sent: it was made for simulated controllers.".to_owned());
-        }
-        let image =
-            Image::new(bytes, model.family).map_err(|error| format!("The file is not sent: {error}."))?;
+        let image = suit_model(self.file()?, model, simulated).map_err(|error| {
+            if error == Unsuitable::OnlySimulated {
+                return "The file is not sent: it was made for simulated controllers.".to_owned();
+            }
+            format!("The file is not sent: {error}.")
+        })?;
         self.send(image, place);
         Ok(())
     }
@@ -339,11 +339,9 @@ impl Firmware {
     }
 
     fn send(&mut self, image: Image, place: LoaderPlace) {
-        self.stage = match Upload::start(place, image, brushwork_link::SystemClock::shared()) {
+        self.stage = match Upload::start(place, image) {
             Ok(upload) => Stage::Sending { upload, progress: Progress::Greeting },
-            Err(error) => Stage::Failed(format!(
-                "Could not start the thread that sends the firmware: {error}. Nothing was erased: switch the controller off and on."
-            )),
+            Err(why) => Stage::Failed(format!("{why}: switch the controller off and on.")),
         };
     }
 

@@ -55,9 +55,7 @@ fn contents_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             ask_ui(ui, &mut model.front.mcp_mut().firmware, identity.as_ref(), simulated, commands);
         }
         Stage::Done(sent) => {
-            let text =
-                format!("{} pages were sent and confirmed in {:.1} s.", sent.pages, sent.took.as_secs_f64());
-            done_ui(ui, &text, &model.front.mcp().firmware, identity.is_some(), commands);
+            done_ui(ui, &sent.sentence(), &model.front.mcp().firmware, identity.is_some(), commands);
         }
         Stage::Failed(sentence) => {
             ui.label(RichText::new(sentence).color(Palette::of(ui).error));

@@ -343,8 +343,7 @@ impl UnitSettings {
     /// How values are written: those that were taken over from a profile, a backup or a journal as they are.
     pub(super) fn options(&self, wanted: &SettingsImage, own_stream: Option<Stream>) -> WriteOptions {
         let options = WriteOptions { own_stream, simulated: self.is_simulated, as_read: false };
-        let is_taken =
-            |key: &str, value| self.taken.contains(key) && self.edits.get(key) == Some(value);
+        let is_taken = |key: &str, value| self.taken.contains(key) && self.edits.get(key) == Some(value);
         // What cannot be written is refused by the plan, which tells every reason.
         write_options(&self.table, &self.held_image(), wanted, is_taken, options).unwrap_or(options)
     }

@@ -55,16 +55,24 @@ pub fn suit(
     if let Some(stream) = stream.filter(|stream| *stream != Stream::Usb) {
         return Err(Unsuitable::NotUsb { stream });
     }
-    if SimulatedImage::is_marked(&bytes) && !identity.simulated {
-        return Err(Unsuitable::OnlySimulated);
-    }
-    let image = Image::new(bytes, model.family)?;
+    let image = suit_model(bytes, model, identity.simulated)?;
     match image.simulated() {
         Some(made) if made.model.key != model.key => {
             Err(Unsuitable::OtherModel { made_for: made.model.name, model: model.name })
         }
         _ => Ok(image),
     }
+}
+
+/// Takes the bytes of a file as an image for a unit of a model, as far as nobody can ask the unit itself: it waits in its loader.
+///
+/// # Errors
+/// A clause that says why it is not sent.
+pub fn suit_model(bytes: Vec<u8>, model: &Model, is_simulated: bool) -> Result<Image, Unsuitable> {
+    if SimulatedImage::is_marked(&bytes) && !is_simulated {
+        return Err(Unsuitable::OnlySimulated);
+    }
+    Ok(Image::new(bytes, model.family)?)
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ mod error;
 mod risk;
 mod send;
 
-pub use check::{Unsuitable, suit};
+pub use check::{Unsuitable, suit, suit_model};
 pub use error::{Left, SendError};
 pub use risk::risks;
 pub use send::{Progress, Sent, send};

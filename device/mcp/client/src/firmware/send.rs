@@ -41,6 +41,22 @@ pub struct Sent {
     pub took: Duration,
 }
 
+impl Progress {
+    /// Whether it can still be cancelled without leaving the controller without firmware.
+    #[must_use]
+    pub fn is_harmless(self) -> bool {
+        self == Self::Greeting
+    }
+}
+
+impl Sent {
+    /// What was sent, in a sentence.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        format!("{} pages were sent and confirmed in {:.1} s.", self.pages, self.took.as_secs_f64())
+    }
+}
+
 /// Sends `image` to a unit in its loader and restarts it. `goes_on` hears of each step; by returning `false` at
 /// [`Progress::Greeting`] it cancels. Afterwards there is no safe moment to stop, and what it returns does not count.
 ///
