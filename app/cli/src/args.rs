@@ -148,6 +148,9 @@ pub struct StatusArgs {
     /// Print JSON (one object a line with --watch).
     #[arg(long)]
     pub json: bool,
+    /// Also say which commands this firmware answers, as far as that has been learned.
+    #[arg(long, conflicts_with = "watch")]
+    pub commands: bool,
     /// Go on until interrupted.
     #[arg(long)]
     pub watch: bool,

@@ -1,5 +1,6 @@
 //! What has been read of a unit so far, for `brushwork status` and `drive`.
 
+use brushwork_link::capability::CapabilityMap;
 use brushwork_link::device::Newest;
 use brushwork_link::{Channel, Event, Identity, SettingsImage, StatusReport, Stream};
 use serde_json::{Map, Value, json};
@@ -10,6 +11,9 @@ use super::output::say;
 #[derive(Default)]
 pub struct Readings {
     newest: Newest,
+    is_all_read: bool,
+    /// What the unit's firmware is known to answer.
+    pub capabilities: CapabilityMap,
     /// What the unit reports.
     pub status: Option<StatusReport>,
     /// The stream that the port is wired to.
@@ -25,7 +29,11 @@ impl Readings {
     #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn take(&mut self, event: Event) {
         match event {
-            Event::Sample(sample) => self.newest.update(&sample),
+            Event::Sample(sample) => {
+                self.is_all_read |= sample.is_all_read;
+                self.newest.update(&sample);
+            }
+            Event::Capabilities { map, .. } => self.capabilities = map,
             Event::Status(status) => self.status = Some(status),
             Event::Selected { stream, .. } => self.stream = stream,
             Event::Failure(failure) => say(failure.to_string()),
@@ -38,7 +46,7 @@ impl Readings {
         self.newest.get(channel)
     }
 
-    /// Whether the signals that every unit tells have come round.
+    /// Whether the signals that every unit tells have come round, or all that this one tells.
     pub fn is_complete(&self, identity: &Identity) -> bool {
         let wanted = [
             Channel::M1_POSITION,
@@ -49,7 +57,7 @@ impl Readings {
             Channel::TEMPERATURE_1,
         ];
         let is_there = |channel| !identity.channels().contains(&channel) || self.get(channel).is_some();
-        self.status.is_some() && wanted.into_iter().all(is_there)
+        self.is_all_read || self.status.is_some() && wanted.into_iter().all(is_there)
     }
 
     /// The channels of a unit but the input pins as JSON, by their keys; what was not read is null.

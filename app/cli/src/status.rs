@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use brushwork_link::capability::{Learned, Presence};
 use brushwork_link::device::{Channel, Event, Identity, Job, JobEnding, PlaceState, PollRate, StatusPlace};
 use brushwork_link::settings::read_all;
 use brushwork_values::Severity;
@@ -94,7 +95,10 @@ fn print(
     let Judged { diagnosis, homed } = family.judge(identity, readings);
     let indicators = indicators(readings, identity, homed);
     if args.json {
-        let object = to_json(identity, readings, &indicators, diagnosis.as_ref());
+        let mut object = to_json(identity, readings, &indicators, diagnosis.as_ref());
+        if args.commands {
+            object["commands"] = json!(learned(identity, readings));
+        }
         return if args.watch { out.json_line(&object) } else { out.json(&object) };
     }
     if args.watch {
@@ -112,6 +116,8 @@ fn print(
         out.line(line)?;
     }
     out.lines(identity.notes.iter().map(|note| format!("Note: {note}")))?;
+    let absent = readings.capabilities.absent().map(|command| titled(identity, command));
+    out.lines(absent.map(|command| format!("Note: This firmware does not have: {command}.")))?;
     if let Some(diagnosis) = &diagnosis {
         out.line(&diagnosis.sentence)?;
     }
@@ -133,7 +139,46 @@ fn print(
         })
         .collect();
     out.line("")?;
-    out.table(&["INDICATOR", "STATE", "MEANING"], &indicators)
+    out.table(&["INDICATOR", "STATE", "MEANING"], &indicators)?;
+    if args.commands {
+        let row = |known: LearnedCommand| {
+            let quickest = known.quickest_ms.map_or_else(|| "-".to_owned(), |ms| format!("{ms:.1}"));
+            vec![
+                format!("{:>7}", known.command),
+                known.title.to_owned(),
+                known.presence.label().to_owned(),
+                format!("{quickest:>12}"),
+            ]
+        };
+        let rows: Vec<_> = learned(identity, readings).into_iter().map(row).collect();
+        out.line("")?;
+        out.table(&["COMMAND", "WHAT IT DOES", "ANSWER", "QUICKEST, ms"], &rows)?;
+    }
+    Ok(())
+}
+
+/// One command of this firmware, for people and for JSON.
+#[derive(Serialize)]
+struct LearnedCommand {
+    command: u8,
+    title: &'static str,
+    presence: Presence,
+    quickest_ms: Option<f64>,
+}
+
+fn learned(identity: &Identity, readings: &Readings) -> Vec<LearnedCommand> {
+    let settings = identity.family.settings();
+    let entry = |(command, presence, learned): (u8, Presence, Learned)| LearnedCommand {
+        command,
+        title: settings.read_title(command),
+        presence,
+        quickest_ms: learned.quickest_ms,
+    };
+    readings.capabilities.entries().map(entry).collect()
+}
+
+fn titled(identity: &Identity, command: u8) -> String {
+    format!("{} ({command})", identity.family.settings().read_title(command))
 }
 
 fn decimals(channel: Channel) -> usize {

@@ -10,6 +10,7 @@ mod device_thread;
 mod echo;
 mod every_family;
 mod firmware;
+mod firmware_that_lacks;
 mod foreign_clients;
 mod killed_clients;
 mod mcl;

@@ -173,7 +173,7 @@ pub fn reload(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Res
         out.line(format!("EEPROM is loaded and read: {count} came back otherwise."))?;
         out.lines(change_lines(&came_back))?;
     }
-    Ok(finished.broken.unwrap_or(if report.failures.is_empty() { Exit::Done } else { Exit::NotTaken }))
+    Ok(finished.broken.unwrap_or(if report.is_whole() { Exit::Done } else { Exit::NotTaken }))
 }
 
 /// Says what an act on the memory of a Motion Mind does to its motor.

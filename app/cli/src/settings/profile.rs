@@ -27,7 +27,7 @@ pub fn export(args: &ExportArgs, out: &mut Output, interrupt: &Interrupt) -> Res
     })?;
     let count = counted(profile.settings.len());
     out.line(format!("{count} of {} are in {}.", controller.describe(), args.file.display()))?;
-    if report.failures.is_empty() {
+    if report.is_whole() {
         return Ok(Exit::Done);
     }
     say("What could not be read is not in the profile.");

@@ -37,7 +37,7 @@ pub fn run(args: &ReadArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
             say(format!("Warning: {}", conflict.sentence));
         }
     }
-    Ok(if report.failures.is_empty() { Exit::Done } else { Exit::Failed })
+    Ok(if report.is_whole() { Exit::Done } else { Exit::Failed })
 }
 
 /// Prints the reference page of the first family that has one; no controller is needed.

@@ -80,7 +80,7 @@ impl Store {
         identity: &Identity,
         report: &ReadReport,
     ) -> Result<(Profile, Backup), KeepError> {
-        if !report.failures.is_empty() {
+        if !report.is_whole() {
             return Err(KeepError::NotWhole);
         }
         let (subject, address) = (*report.table.subject(), identity.unit_address());

@@ -5,6 +5,7 @@
 //! their own ([`Keeping`]), so that neither the window nor the device thread waits for a disk.
 
 mod backups;
+mod firmware;
 pub mod folder;
 mod journals;
 mod memory;

@@ -7,10 +7,13 @@ use std::sync::Arc;
 
 use brushwork_canopen::NodeId;
 use brushwork_canopen::adapter::Form;
+use brushwork_link::capability::KeepsCapabilities;
 use brushwork_link::device::{Addresses, DeviceHandle, DeviceOptions, DeviceThread, PollRate};
 use brushwork_link::driver::can_line;
 use brushwork_link::transport::{ConnectTarget, OpenError, Stream, Transport, list_ports, ports};
 use brushwork_link::{Clock, FamilyChoice, HiddenSettings};
+
+use crate::keep::Store;
 
 pub mod firmware;
 pub mod line;
@@ -131,6 +134,7 @@ fn spawn_on_can(
         simulated: simulation.is_some(),
         // Hidden settings are found by address, which nodes share.
         hidden: alone.map(|simulation| simulation as Arc<dyn HiddenSettings>),
+        capabilities: keeper(simulation.as_deref()),
         ..DeviceOptions::default()
     };
     let (line, nodes) = can_line(transport, &clock, form).ok_or(SessionError::NoNodes)?;
@@ -144,6 +148,11 @@ fn stream_of(target: &ConnectTarget) -> Option<Stream> {
         ConnectTarget::Serial { path, .. } => ports::stream_of(path, &list_ports().unwrap_or_default()),
         ConnectTarget::Tcp { .. } | ConnectTarget::Can { .. } | ConnectTarget::Sim(_) => None,
     })
+}
+
+/// Where what firmware answers is kept. A unit that is simulated here has what its faults say this time.
+fn keeper(simulation: Option<&Simulation>) -> Option<Arc<dyn KeepsCapabilities>> {
+    simulation.is_none().then(|| Arc::new(Store::of_user()) as Arc<dyn KeepsCapabilities>)
 }
 
 fn spawn(
@@ -161,6 +170,7 @@ fn spawn(
         stream,
         simulated: simulation.is_some(),
         hidden,
+        capabilities: keeper(simulation.as_deref()),
         ..DeviceOptions::default()
     };
     let device = DeviceThread::spawn(transport, clock, options).map_err(SessionError::Thread)?;

@@ -211,6 +211,7 @@ impl History {
             | Event::JobStarted { .. }
             | Event::JobProgress { .. }
             | Event::JobEnded(_)
+            | Event::Capabilities { .. }
             | Event::Link(_)
             | Event::Traffic { .. } => {}
         }

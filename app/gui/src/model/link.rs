@@ -3,10 +3,12 @@
 //! Everything here follows from the device thread's events. What an event means for the rest of the window (a
 //! sentence to say, a slider to put back to zero) is handed back as [`Effect`]s.
 
+use brushwork_link::capability::CapabilityMap;
 use brushwork_link::device::{DisarmReason, StopReport};
 use brushwork_link::{
     ArmScope, Channel, Event, Failure, Identity, LinkStatistics, Sample, StatusReport, Stream,
 };
+use std::collections::BTreeMap;
 use std::time::Duration;
 
 use super::indicators::Indicators;
@@ -71,6 +73,8 @@ pub struct LinkView {
     pub refusals: Vec<Failure>,
     /// What else can drive a motor while something is armed: input pins and scripts, each as a sentence.
     pub warnings: Vec<String>,
+    /// The commands that each unit is known to lack, by its address.
+    absent: BTreeMap<u8, Vec<u8>>,
 }
 
 /// How far the search for units is.
@@ -139,6 +143,7 @@ impl LinkView {
                 self.statistics = statistics;
                 Vec::new()
             }
+            Event::Capabilities { address, map } => self.lacks(address, &map),
             Event::Failure(failure) => vec![Effect::Say(Gravity::Error, failure.to_string())],
             Event::Lost(failure) => self.lost(&failure),
             Event::LoaderEntered => Vec::new(),
@@ -201,6 +206,25 @@ impl LinkView {
         self.indicators = Indicators::of(self.family(), &report, self.identity(), self.homed);
         self.status = Some(report);
         Vec::new()
+    }
+
+    /// The commands that the selected unit's firmware is known to lack, in words, where it lacks some.
+    pub fn lacking(&self) -> Option<String> {
+        let unit = self.identity()?;
+        let absent = self.absent.get(&unit.address).filter(|absent| !absent.is_empty())?;
+        Some(titles(unit, absent))
+    }
+
+    /// Says which commands a firmware is newly known to lack.
+    fn lacks(&mut self, address: u8, map: &CapabilityMap) -> Vec<Effect> {
+        let known = self.absent.entry(address).or_default();
+        let new: Vec<u8> = map.absent().filter(|command| !known.contains(command)).collect();
+        known.extend(&new);
+        let Some(unit) = self.units.iter().find(|unit| unit.address == address && !new.is_empty()) else {
+            return Vec::new();
+        };
+        let sentence = format!("The firmware of {} does not have: {}.", unit.place(), titles(unit, &new));
+        vec![Effect::Say(Gravity::Note, sentence)]
     }
 
     #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
@@ -279,4 +303,10 @@ impl LinkView {
         let unit = self.units.iter().find(|unit| unit.address == address);
         unit.map_or_else(|| format!("0x{address:02X}"), Identity::place)
     }
+}
+
+fn titles(unit: &Identity, commands: &[u8]) -> String {
+    let titles: Vec<_> =
+        commands.iter().map(|command| unit.family.settings().read_phrase(*command)).collect();
+    titles.join(", ")
 }

@@ -3,10 +3,11 @@
 use std::time::Duration;
 
 use crate::support::bench::Bench;
-use brushwork_gui::model::general::{Sheet, sections};
+use brushwork_gui::model::general::{Section, Sheet, sections};
 use brushwork_gui::model::link::Arming;
 use brushwork_gui::model::message::Gravity;
 use brushwork_gui::model::screen::Screen;
+use brushwork_link::settings::Group;
 use brushwork_mcp_sim::settings::Settings;
 use brushwork_mcp_wire::packet_serial::number;
 use egui::Key;
@@ -247,7 +248,11 @@ fn what_could_not_be_read_says_why_in_its_row() {
     assert!(bench.sees(&format!("{MAX_VOLTS} on the controller: –")));
     assert!(bench.sees_part(&format!("{MAX_VOLTS}: Could not read")));
     assert!(bench.sees("Logic battery maximum on the controller: 15.0 V"), "the rest is read all the same");
-    assert!(bench.sees_part("2 settings could not be read"));
+    assert!(bench.sees_part("this firmware does not have it"), "all else was answered");
+    bench.press("Read settings");
+    bench.press("Read");
+    bench.pass_ms(3000);
+    assert!(bench.sees_part("This firmware does not have 2 settings."));
 }
 
 #[test]
@@ -353,8 +358,15 @@ fn after_connecting_the_settings_are_known_on_every_screen_without_a_word() {
 #[test]
 fn reading_that_nobody_asked_for_delays_nothing_and_is_begun_again() {
     let mut bench = Bench::new();
-    // Without an answer to this command reading takes its time.
-    bench.line.swallow(number::READ_MAIN_VOLTAGES, &[]);
+    // Without an answer to these commands reading takes its time, until it is known that the firmware lacks them.
+    for command in [
+        number::READ_MAIN_VOLTAGES,
+        number::READ_LOGIC_VOLTAGES,
+        number::READ_CURRENT_LIMITS_M1,
+        number::READ_CURRENT_LIMITS_M2,
+    ] {
+        bench.line.swallow(command, &[]);
+    }
     bench.press("Connect");
     for _ in 0..500 {
         if bench.model().front.settings.is_reading_quietly() {
@@ -543,5 +555,5 @@ fn beside_the_simulated_world_in_the_smallest_window_nothing_is_cut_off() {
     bench.press("Section Voltage limits");
     bench.pass_ms(300);
     let section = bench.model().front.general.section;
-    assert_eq!(format!("{section:?}"), "Group(VoltageLimits)");
+    assert_eq!(section, Section::Group(Group::VOLTAGE_LIMITS));
 }

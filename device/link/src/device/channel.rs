@@ -228,6 +228,8 @@ pub struct Sample {
     pub requested_at: Duration,
     /// Host time at which the sweep's last reply was complete.
     pub replied_at: Duration,
+    /// Whether all that this unit can be asked has been read once by now, or was found not to answer.
+    pub is_all_read: bool,
     /// By input pin; empty in a sweep that did not read them.
     pub signals: Vec<PinSignal>,
     readings: Vec<Reading>,
@@ -242,6 +244,7 @@ impl Sample {
             sequence: 0,
             requested_at: Duration::MAX,
             replied_at: Duration::ZERO,
+            is_all_read: false,
             signals: Vec::new(),
             readings: Vec::new(),
         }

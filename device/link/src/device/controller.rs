@@ -280,6 +280,12 @@ impl<'a> Line<'a> {
         }
     }
 
+    /// Whether this is a stop, which has no time for anything else.
+    #[must_use]
+    pub fn is_stopping(&self) -> bool {
+        self.stopping
+    }
+
     /// Whether anything that can set a motor in motion was about to be written over this line.
     #[must_use]
     pub fn has_moved(&self) -> bool {

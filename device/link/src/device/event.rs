@@ -6,6 +6,7 @@ use super::identity::Identity;
 use super::job::{JobId, JobReport};
 use super::status::StatusReport;
 use super::stop::StopReport;
+use crate::capability::CapabilityMap;
 use crate::exchange::{LinkStatistics, Traffic};
 use crate::failure::Failure;
 use crate::transport::Stream;
@@ -104,6 +105,13 @@ pub enum Event {
     },
     /// A job ended.
     JobEnded(JobReport),
+    /// What a unit's firmware is known to answer: at first, and when more was learned.
+    Capabilities {
+        /// The unit.
+        address: u8,
+        /// Its commands.
+        map: CapabilityMap,
+    },
     /// The link's figures, twice a second.
     Link(LinkStatistics),
     /// What went over the wire, while that was asked for.
@@ -172,6 +180,7 @@ impl Event {
             | Self::Transacted { .. }
             | Self::RawReply { .. }
             | Self::LoaderEntered
+            | Self::Capabilities { .. }
             | Self::Link(_)
             | Self::Traffic { .. }
             | Self::Failure(_)

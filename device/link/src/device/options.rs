@@ -1,6 +1,7 @@
 //! How a link is opened.
 
 use super::poll_rate::PollRate;
+use crate::capability::KeepsCapabilities;
 use crate::family::FamilyChoice;
 use crate::transport::Stream;
 use crate::wire::HiddenSettings;
@@ -58,6 +59,8 @@ pub struct DeviceOptions {
     pub simulated: bool,
     /// The simulated controller's settings that have no wire form; `None` on everything else.
     pub hidden: Option<Arc<dyn HiddenSettings>>,
+    /// Where what firmware answers is kept from one session to the next; `None` keeps it for this one.
+    pub capabilities: Option<Arc<dyn KeepsCapabilities>>,
     /// How often the signals are read at first.
     pub poll: PollRate,
     /// Events that the channel to the window holds.
@@ -74,6 +77,7 @@ impl Default for DeviceOptions {
             stream: None,
             simulated: false,
             hidden: None,
+            capabilities: None,
             poll: PollRate::DEFAULT,
             event_capacity: 1024,
             request_capacity: 64,

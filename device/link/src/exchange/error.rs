@@ -82,6 +82,12 @@ pub enum ExchangeError {
         /// The generation that was detected.
         generation: FirmwareGeneration,
     },
+    /// The unit is known to lack the command, so that it was not asked.
+    #[error("this firmware does not have it: it never answers \"{command}\", while it answers others")]
+    Absent {
+        /// The command's title.
+        command: String,
+    },
     /// The controller understood and refused.
     #[error("the controller refused: {what}")]
     Refused {
@@ -142,7 +148,8 @@ impl ExchangeError {
             Self::TimedOut { .. }
             | Self::BadCrc { .. }
             | Self::BadAcknowledgement { .. }
-            | Self::Malformed { .. } => true,
+            | Self::Malformed { .. }
+            | Self::Absent { .. } => true,
             Self::Refused { is_absent, .. } => *is_absent,
             Self::MayHaveRun { cause } => cause.is_unusable_answer(),
             _ => false,
@@ -200,7 +207,9 @@ impl ExchangeError {
             Self::Interrupted { .. } => "Try again when you are ready",
             Self::NotArmed { .. } => "Arm the motors on this screen first",
             Self::Unproven { .. } => "Try it on a simulated controller",
-            Self::Unsupported { .. } => "Do without it, or check the firmware's version",
+            Self::Unsupported { .. } | Self::Absent { .. } => {
+                "Do without it, or check the firmware's version"
+            }
             Self::Refused { .. } => "Check the value and the state of the controller",
             Self::Impossible { .. } => "Ask for something else",
             Self::Encode { .. } => "Use a value in range",

@@ -7,6 +7,7 @@ use super::statistics::{Counters, LinkStatistics};
 use super::trace::{Trace, Traffic};
 use super::turnaround::Turnaround;
 use super::watch::Watch;
+use crate::capability::{CapabilityBook, KeepsCapabilities};
 use crate::clock::Clock;
 use crate::device::StopBytes;
 use crate::transport::Transport;
@@ -48,6 +49,8 @@ pub struct Exchange {
     is_scanning: bool,
     /// Time of the present request in which this thread had no processor: no fault of the line.
     stolen: Duration,
+    /// What the units of this line are known to answer.
+    capabilities: CapabilityBook,
     /// Counts in place of the transport's own while a search is on.
     latency: Option<Duration>,
 }
@@ -71,8 +74,27 @@ impl Exchange {
             turnaround: Turnaround::default(),
             is_scanning: false,
             stolen: Duration::ZERO,
+            capabilities: CapabilityBook::default(),
             latency: None,
         }
+    }
+
+    /// The same, with what earlier sessions have learned of firmware.
+    #[must_use]
+    pub fn with_capabilities(mut self, keeper: Option<Arc<dyn KeepsCapabilities>>) -> Self {
+        self.capabilities = CapabilityBook::new(keeper);
+        self
+    }
+
+    /// What the units of this line are known to answer.
+    pub fn capabilities(&mut self) -> &mut CapabilityBook {
+        &mut self.capabilities
+    }
+
+    /// Requests that were sent again since the link was opened.
+    #[must_use]
+    pub fn retries(&self) -> u64 {
+        self.counters.totals.retries
     }
 
     /// Lets every reply take so much longer: a computer under load, or a controller that is just starting.

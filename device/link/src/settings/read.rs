@@ -40,6 +40,21 @@ pub struct ReadFailure {
     pub keys: Vec<String>,
     /// What was tried and what came back.
     pub failure: Failure,
+    /// Whether the firmware lacks it, so that there is nothing to read.
+    pub is_absent: bool,
+}
+
+impl ReadReport {
+    /// What this firmware has and could not be read all the same.
+    pub fn unread(&self) -> impl Iterator<Item = &ReadFailure> {
+        self.failures.iter().filter(|failure| !failure.is_absent)
+    }
+
+    /// Whether all that this firmware has was read.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        self.unread().next().is_none()
+    }
 }
 
 /// Reads every setting of a controller with as few commands as there are replies to read. What one command
@@ -110,6 +125,7 @@ pub fn went_out(error: &ExchangeError) -> bool {
         ExchangeError::NotArmed { .. }
             | ExchangeError::Unproven { .. }
             | ExchangeError::Unsupported { .. }
+            | ExchangeError::Absent { .. }
             | ExchangeError::Encode { .. }
     )
 }
@@ -226,7 +242,7 @@ impl Failures {
     fn no_reply(&mut self, command: u8, row: &Row, error: &ExchangeError) {
         let failure = || error.failure(self.family.settings().read_phrase(command), &self.on);
         let failure = if self.knows(command) { None } else { Some(failure()) };
-        self.add(command, row, failure);
+        self.add(command, row, failure, matches!(error, ExchangeError::Absent { .. }));
     }
 
     fn incomplete(&mut self, command: u8, row: &Row) {
@@ -238,16 +254,16 @@ impl Failures {
                 "Check which firmware the controller has",
             )
         });
-        self.add(command, row, failure);
+        self.add(command, row, failure, false);
     }
 
     fn knows(&self, command: u8) -> bool {
         self.list.iter().any(|known| known.command == command)
     }
 
-    fn add(&mut self, command: u8, row: &Row, failure: Option<Failure>) {
+    fn add(&mut self, command: u8, row: &Row, failure: Option<Failure>, is_absent: bool) {
         if let Some(failure) = failure {
-            self.list.push(ReadFailure { command, keys: Vec::new(), failure });
+            self.list.push(ReadFailure { command, keys: Vec::new(), failure, is_absent });
         }
         if let Some(known) = self.list.iter_mut().find(|known| known.command == command) {
             known.keys.push(row.key.clone());

@@ -107,7 +107,7 @@ fn backup_file<'p>(path: &'p Path, args: &UpdateArgs) -> NewFile<'p> {
 /// Reads the settings into a profile. Without a whole backup nothing is erased.
 fn back_up(args: &UpdateArgs, controller: &Controller<'_>, out: &mut Output) -> Result<PathBuf, Exit> {
     let report = controller.read()?;
-    let exit = if report.failures.is_empty() { Exit::Failed } else { Exit::Refused };
+    let exit = if report.is_whole() { Exit::Failed } else { Exit::Refused };
     let (profile, _) = Store::of_user()
         .back_up_for_firmware(&controller.unit, controller.identity(), &report)
         .map_err(|error| exit.saying(format!("{error} Nothing was sent.")))?;

@@ -386,7 +386,7 @@ fn back_up(
 
 fn keep(report: &ReadReport, identity: &Identity, unit: &UnitId, store: &Store) -> Result<Kept, String> {
     let kept = store.back_up_for_firmware(unit, identity, report);
-    let (profile, backup) = kept.map_err(|error| match report.failures.first() {
+    let (profile, backup) = kept.map_err(|error| match report.unread().next() {
         Some(unread) => format!("{error} {}", unread.failure),
         None => error.to_string(),
     })?;

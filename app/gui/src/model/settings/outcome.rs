@@ -1,7 +1,7 @@
 //! What work with settings gave, taken over into a unit's settings and told in sentences.
 
 use brushwork_link::settings::{
-    DefaultsReport, Known, RowState, SaveReport, SaveVerdict, WriteError, WriteReport,
+    DefaultsReport, Known, ReadFailure, RowState, SaveReport, SaveVerdict, WriteError, WriteReport,
 };
 use brushwork_link::{JobEnding, ReadReport, SettingsImage, SettingsTable};
 
@@ -32,7 +32,7 @@ pub(super) fn keys_read(
     is_quiet: bool,
 ) -> Vec<(Gravity, String)> {
     unit.note_keys(keys, &report.image);
-    let failures = report.failures.iter().filter(|_| !is_quiet);
+    let failures = report.unread().filter(|_| !is_quiet);
     failures.map(|unread| (Gravity::Error, unread.failure.to_string())).collect()
 }
 
@@ -88,10 +88,12 @@ pub(super) fn nothing_came(running: &Running, ending: &JobEnding) -> Summary {
 
 fn read(unit: &mut UnitSettings, report: ReadReport, from_eeprom: bool) -> Summary {
     let (known, failed) = (report.image.len(), unread(&report));
+    let absent = rows_of(report.failures.iter().filter(|failure| failure.is_absent));
     let from = if from_eeprom { "loaded from EEPROM and read" } else { "read" };
     unit.note_read(report, from_eeprom);
-    let (gravity, rest) = match failed {
-        0 => (Gravity::Note, String::new()),
+    let (gravity, rest) = match (failed, absent) {
+        (0, 0) => (Gravity::Note, String::new()),
+        (0, _) => (Gravity::Note, format!(" This firmware does not have {}.", counted(absent))),
         _ => (
             Gravity::Warning,
             format!(" {} could not be read; each row says why.", capital(&counted(failed))),
@@ -102,7 +104,11 @@ fn read(unit: &mut UnitSettings, report: ReadReport, from_eeprom: bool) -> Summa
 }
 
 fn unread(report: &ReadReport) -> usize {
-    report.failures.iter().map(|failure| failure.keys.len()).sum()
+    rows_of(report.unread())
+}
+
+fn rows_of<'r>(failures: impl Iterator<Item = &'r ReadFailure>) -> usize {
+    failures.map(|failure| failure.keys.len()).sum()
 }
 
 fn written(unit: &mut UnitSettings, report: &WriteReport, replaced: &SettingsImage, known: Known) -> Summary {

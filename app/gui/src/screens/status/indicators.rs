@@ -35,9 +35,11 @@ pub fn active_ui(ui: &mut Ui, connection: &Connection) {
     ui.add_space(6.0);
     heading_ui(ui, "What the controller reports");
     let report = connection.link.status.as_ref();
-    let active = report
-        .map(|report| connection.family().active(report, connection.link.identity()))
-        .unwrap_or_default();
+    let Some(report) = report else {
+        ui.weak("Not known: no status has come from this controller.");
+        return;
+    };
+    let active = connection.family().active(report, connection.link.identity());
     if active.is_empty() {
         ui.weak("Nothing: neither warning nor error.");
     }

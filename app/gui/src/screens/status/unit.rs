@@ -49,8 +49,9 @@ pub fn unit_ui(ui: &mut Ui, connection: &Connection) {
         ),
     ];
     let own = connection.family().unit_row(identity);
+    let lacking = connection.link.lacking().map(|commands| ("Lacks commands", commands));
     Grid::new("unit").num_columns(2).spacing([14.0, 3.0]).show(ui, |ui| {
-        for (label, value) in rows.into_iter().chain(own) {
+        for (label, value) in rows.into_iter().chain(own).chain(lacking) {
             ui.weak(label);
             ui.add(Label::new(value).truncate());
             ui.end_row();

@@ -81,7 +81,7 @@ impl DeviceLoop {
         let now = clock.now();
         let handle = DeviceHandle::new(requests, for_window, signals.clone(), waker.clone());
         let device_loop = Self {
-            exchange: Exchange::new(transport, clock.clone()),
+            exchange: Exchange::new(transport, clock.clone()).with_capabilities(options.capabilities.clone()),
             guard: Guard::new(signals.clone()),
             outbox: Outbox::new(events, waker),
             waiting: VecDeque::new(),
@@ -181,6 +181,7 @@ impl DeviceLoop {
         self.phase = Phase::Running;
         self.sweep = Sweep::new(self.clock.now());
         self.tell_selection();
+        self.tell_capabilities();
         if std::mem::take(&mut self.stopped_while_connecting) {
             self.halt(DisarmReason::Stop);
         }
@@ -233,6 +234,7 @@ impl DeviceLoop {
         self.guard.set_armed(false, self.signals.disarms());
         self.guard.motion_ends();
         self.phase = Phase::Ended;
+        self.tell_capabilities();
         self.outbox.send(last);
     }
 
@@ -244,10 +246,20 @@ impl DeviceLoop {
             let mut statistics = self.exchange.statistics();
             statistics.dropped_samples = self.outbox.dropped_samples();
             self.outbox.send(Event::Link(statistics));
+            self.tell_capabilities();
         }
         self.tell_traffic();
         self.outbox.flush();
         self.outbox.wake_window();
+    }
+
+    /// Keeping them takes the time of a file, which nobody has to spare who drives a motor.
+    fn tell_capabilities(&mut self) {
+        if self.armed.is_none() {
+            for (address, map) in self.exchange.capabilities().take_news() {
+                self.outbox.send(Event::Capabilities { address, map });
+            }
+        }
     }
 
     fn tell_traffic(&mut self) {

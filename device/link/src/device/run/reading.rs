@@ -91,6 +91,7 @@ impl DeviceLoop {
         if sample.is_empty() {
             return;
         }
+        sample.is_all_read = self.units[self.selected].plan.is_all_read(now);
         let (from, to) = (sample.requested_at, sample.replied_at);
         let setpoints = self.units[self.selected].setpoints;
         for (setpoint, channel) in setpoints.into_iter().zip([Channel::M1_SETPOINT, Channel::M2_SETPOINT]) {

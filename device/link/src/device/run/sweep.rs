@@ -3,7 +3,7 @@
 use crate::device::channel::Sample;
 use crate::device::controller::{PollItem, PollList};
 use crate::device::status::StatusReport;
-use std::collections::VecDeque;
+use std::collections::{HashSet, VecDeque};
 use std::time::Duration;
 
 /// A slow signal is read this often at most, so that fast sweeps have room for the fast ones.
@@ -53,6 +53,7 @@ pub struct Plan {
     next_slow: usize,
     slow_due_at: Duration,
     misses: Vec<(PollItem, u32, Duration)>,
+    read: HashSet<PollItem>,
     pub last_status: Option<StatusReport>,
     pub status_told_at: Duration,
 }
@@ -65,6 +66,7 @@ impl Plan {
             next_slow: 0,
             slow_due_at: Duration::ZERO,
             misses: Vec::new(),
+            read: HashSet::new(),
             last_status: None,
             status_told_at: Duration::ZERO,
         }
@@ -112,5 +114,12 @@ impl Plan {
 
     pub fn answered(&mut self, item: PollItem) {
         self.misses.retain(|(missed, ..)| *missed != item);
+        self.read.insert(item);
+    }
+
+    /// Whether each of its signals has been read once, or is left out since it is not answered.
+    pub fn is_all_read(&self, now: Duration) -> bool {
+        let mut items = self.list.fast.iter().chain(&self.list.slow);
+        items.all(|item| self.read.contains(item) || !self.works(*item, now))
     }
 }

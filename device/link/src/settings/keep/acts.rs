@@ -57,7 +57,7 @@ impl Known {
                 failure: error.failure("read the settings first", wire.describe()),
             })?;
             let is_as_known = |(key, value): (&str, _)| known.image.get(key) == Some(value);
-            if now.failures.is_empty() && now.image.iter().all(is_as_known) {
+            if now.failures.iter().all(|failure| failure.is_absent) && now.image.iter().all(is_as_known) {
                 return Ok(known);
             }
         }
@@ -202,7 +202,7 @@ pub fn defaults_kept(
     begin(wire, Act::Defaults, &before, wanted, keeper)?;
     let result = restore_defaults(wire, subject);
     let ending = match &result {
-        Ok(report) if report.read.failures.is_empty() => Ending::Known,
+        Ok(report) if report.read.is_whole() => Ending::Known,
         _ => Ending::Open,
     };
     end_act(wire, keeper, ending);

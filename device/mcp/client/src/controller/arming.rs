@@ -20,6 +20,9 @@ use std::time::Duration;
 const PACKET_SERIAL: i64 = 1;
 const PRIORITY_SERIAL: i64 = 1;
 
+const UNSEEN: &str =
+    "This controller does not tell its status: a fault, a limit or an E-stop is not seen here.";
+
 /// Why motors may not be moved, and what to do about it.
 struct Objection {
     came_back: String,
@@ -45,10 +48,15 @@ pub fn check(
     };
     let controller_timeout = watchdog.map_err(|objection| objections.insert(0, objection)).ok();
     objections.extend(controller_timeout.and_then(|timeout| object_to_lateness(line.exchange(), timeout)));
-    objections.extend(faults(speaker, line)?.into_iter().map(|fault| {
+    let faults = faults(speaker, line)?;
+    let tells_status = faults.is_some();
+    objections.extend(faults.into_iter().flatten().map(|fault| {
         object(format!("the controller reports {fault}"), "Remove the cause and reset the error first")
     }));
-    let warnings = if objections.is_empty() { coasting(speaker, line)? } else { Vec::new() };
+    let mut warnings = if objections.is_empty() { coasting(speaker, line)? } else { Vec::new() };
+    if !tells_status {
+        warnings.push(UNSEEN.to_owned());
+    }
     let failure =
         |objection: Objection| Failure::new("arm the motors", on, objection.came_back, objection.remedy);
     Ok(ArmCheck { reasons: objections.into_iter().map(failure).collect(), controller_timeout, warnings })
@@ -203,13 +211,13 @@ fn coasting(speaker: Speaker, line: &mut Line<'_>) -> Result<Vec<String>, Exchan
     Ok(warnings)
 }
 
-/// What the controller has stopped motors for.
-fn faults(speaker: Speaker, line: &mut Line<'_>) -> Result<Vec<&'static str>, ExchangeError> {
+/// What the controller has stopped motors for; `None` where it does not tell its status.
+fn faults(speaker: Speaker, line: &mut Line<'_>) -> Result<Option<Vec<&'static str>>, ExchangeError> {
     let Some(reply) = speaker.ask_if_known(line, commands::READ_STATUS)? else {
-        return Ok(Vec::new());
+        return Ok(None);
     };
     let word = u32::try_from(reply.values.int(STATUS)).unwrap_or(0);
     let conditions = status::decode(word, speaker.generation);
     let faults = conditions.iter().filter(|condition| condition.severity() == Severity::Error);
-    Ok(faults.map(Condition::title).collect())
+    Ok(Some(faults.map(Condition::title).collect()))
 }

@@ -197,6 +197,7 @@ fn identify(
     version: &str,
     simulated: bool,
 ) -> Result<Mcp, ExchangeError> {
+    line.exchange().capabilities().introduce(address.get(), version);
     let finding = generation::detect(line, address)?;
     let speaker = Speaker::packets(address, finding.generation);
     finish(line, speaker, None, version, simulated, finding.notes)

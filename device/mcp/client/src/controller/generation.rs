@@ -77,6 +77,9 @@ type Observations = [Option<bool>; PROBES.len()];
 fn observe(line: &mut Line<'_>, address: Address) -> Result<Observations, ExchangeError> {
     let mut observations = [None; PROBES.len()];
     for (observation, probe) in observations.iter_mut().zip(&PROBES) {
+        if line.exchange().capabilities().lacks(address.get(), probe.command) {
+            continue;
+        }
         *observation = match ask(line, address, probe) {
             Ok(long) => Some(long),
             Err(error) if error.is_link_lost() || error.interruption().is_some() => return Err(error),

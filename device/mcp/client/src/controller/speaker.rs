@@ -3,8 +3,8 @@
 use crate::can::{Place, carry_out};
 use crate::packet::{Ask, gate, transact, typed_reply};
 use brushwork_link::device::controller::Line;
-use brushwork_link::exchange::{ExchangeError, Reply};
-use brushwork_mcp_wire::packet_serial::{Address, Generation, Read, Request, Typed};
+use brushwork_link::exchange::{ExchangeError, Reply, Tries};
+use brushwork_mcp_wire::packet_serial::{Address, Effect, Generation, Read, Request, Typed, number};
 use brushwork_values::Value;
 
 /// Who is spoken to and in which widths.
@@ -62,16 +62,78 @@ impl Speaker {
             permit: line.permit(),
             retries: line.retries(),
         };
-        if gate(&ask)?.effect.may_move() {
+        let form = gate(&ask)?;
+        if form.effect.may_move() {
             line.motion_begins();
         }
+        let can_be_learned = matches!(form.effect, Effect::Query | Effect::Setting)
+            && !line.is_stopping()
+            && line.exchange().capabilities().knows(self.id());
+        let title =
+            || ask.request.row().map_or_else(String::new, |row| row.title(self.generation).to_owned());
+        if can_be_learned && line.exchange().capabilities().lacks(self.id(), command) {
+            return Err(ExchangeError::Absent { command: title() });
+        }
+        let retries_before = line.exchange().retries();
+        let result = self.send(line, &ask);
+        if can_be_learned && self.learn(line, command, &result, retries_before)? {
+            return Err(ExchangeError::Absent { command: title() });
+        }
+        result
+    }
+
+    fn send(self, line: &mut Line<'_>, ask: &Ask<'_>) -> Result<Reply, ExchangeError> {
         match self.wire {
             Wire::Packets => {
                 let (exchange, watch) = line.parts();
-                transact(exchange, watch, &ask)
+                transact(exchange, watch, ask)
             }
-            Wire::Objects(place) => carry_out(line, place, &ask),
+            Wire::Objects(place) => carry_out(line, place, ask),
         }
+    }
+
+    /// Takes note of how the unit took a command. Whether the firmware is found to lack it: nothing came to it, and the version came right after.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "an error that tells nothing of the firmware")]
+    fn learn(
+        self,
+        line: &mut Line<'_>,
+        command: u8,
+        result: &Result<Reply, ExchangeError>,
+        retries_before: u64,
+    ) -> Result<bool, ExchangeError> {
+        let again = line.exchange().retries() - retries_before;
+        let again = u32::try_from(again).unwrap_or(u32::MAX);
+        match result {
+            Ok(reply) => {
+                let took = reply.span.replied_at.saturating_sub(reply.span.requested_at);
+                line.exchange().capabilities().answered(self.id(), command, took, again);
+            }
+            Err(ExchangeError::Refused { is_absent, .. }) => {
+                line.exchange().capabilities().refused(self.id(), command, *is_absent);
+            }
+            Err(ExchangeError::BadAcknowledgement { .. }) => {
+                line.exchange().capabilities().refused(self.id(), command, false);
+            }
+            // While motors may run, nothing is asked only in order to learn.
+            Err(ExchangeError::TimedOut { heard: 0, tries: Tries(tries), .. })
+                if self.is_packets() && !line.permit().motion =>
+            {
+                let request = Request::new(self.address, number::READ_VERSION, &[]);
+                let permit = line.permit();
+                let ask = Ask { request: &request, generation: self.generation, permit, retries: 0 };
+                return match self.send(line, &ask) {
+                    Ok(_) => Ok(line.exchange().capabilities().silent(self.id(), command, *tries)),
+                    Err(error) if error.is_link_lost() || error.interruption().is_some() => Err(error),
+                    Err(_) => Ok(false),
+                };
+            }
+            Err(_) => {}
+        }
+        Ok(false)
+    }
+
+    fn is_packets(self) -> bool {
+        matches!(self.wire, Wire::Packets)
     }
 
     /// As [`Speaker::ask`], but `None` where the unit does not know the command: it answers nothing, or nothing that fits, or

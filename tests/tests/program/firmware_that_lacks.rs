@@ -1,0 +1,137 @@
+//! A unit whose firmware lacks commands: found out once, kept, not asked for again, and told as what it is.
+#![cfg(unix)]
+#![expect(clippy::print_stdout, reason = "measured times belong into the record of a test run")]
+
+use std::collections::BTreeMap;
+use std::io::{Read as _, Write as _};
+use std::net::{TcpListener, TcpStream};
+use std::sync::{Arc, Mutex};
+use std::thread;
+use std::time::Instant;
+
+use brushwork_mcp_wire::packet_serial::number;
+use brushwork_tests::program::{Ending, Program};
+use brushwork_tests::wait::LIMIT;
+use serde_json::Value;
+
+const BRUSHWORK: &str = env!("CARGO_BIN_EXE_brushwork-for-tests");
+
+/// A simulated controller behind a line that keeps some commands from it: firmware without them.
+struct Lacking {
+    _sim: Program,
+    target: String,
+    asked: Arc<Mutex<BTreeMap<u8, usize>>>,
+}
+
+impl Lacking {
+    fn start(model: &str, generation: &str, lacks: &'static [u8]) -> Self {
+        let mut sim = Program::start(
+            BRUSHWORK,
+            &["sim", "--model", model, "--tcp", "127.0.0.1:0", "--generation", generation],
+        );
+        let greeting = sim.wait_for("Connect with", LIMIT);
+        let behind = greeting.rsplit("tcp:").next().unwrap_or_default().to_owned();
+        let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
+        let target = format!("tcp:{},stream=usb", listener.local_addr().expect("it has an address"));
+        let asked = Arc::new(Mutex::new(BTreeMap::new()));
+        let counts = Arc::clone(&asked);
+        // The thread ends with the test's process; it waits for clients for as long as there may be some.
+        named("lacking line", move || {
+            for client in listener.incoming().flatten() {
+                let Ok(unit) = TcpStream::connect(&behind) else { return };
+                let _ = client.set_nodelay(true).and_then(|()| unit.set_nodelay(true));
+                let back = client.try_clone().and_then(|to| Ok((unit.try_clone()?, to)));
+                let (from, to) = back.expect("a connection can be held twice");
+                named("lacking line back", move || pass(from, to, &[], &Mutex::default()));
+                pass(client, unit, lacks, &counts);
+            }
+        });
+        Self { _sim: sim, target, asked }
+    }
+
+    fn run(&self, arguments: &[&str]) -> Ending {
+        let whole = [arguments, &["--connect", &self.target]].concat();
+        Program::start(BRUSHWORK, &whole).finish(LIMIT)
+    }
+
+    /// How often the commands were asked for since the last call.
+    fn take_asked(&self) -> BTreeMap<u8, usize> {
+        std::mem::take(&mut *self.asked.lock().expect("no test has failed with it"))
+    }
+}
+
+fn named(name: &str, work: impl FnOnce() + Send + 'static) {
+    thread::Builder::new().name(name.to_owned()).spawn(work).expect("a thread can be started");
+}
+
+/// Passes bytes on but for packets of the commands that are lacking, which are counted. A request of this program comes in one write.
+fn pass(mut from: TcpStream, mut to: TcpStream, lacks: &[u8], asked: &Mutex<BTreeMap<u8, usize>>) {
+    let mut bytes = [0; 1024];
+    while let Ok(count) = from.read(&mut bytes) {
+        if count == 0 {
+            break;
+        }
+        match bytes[..count] {
+            [address, command, ..] if address >= 0x80 && lacks.contains(&command) => {
+                *asked.lock().expect("no test has failed with it").entry(command).or_insert(0) += 1;
+            }
+            _ if to.write_all(&bytes[..count]).is_err() => break,
+            _ => {}
+        }
+    }
+    let _ = to.shutdown(std::net::Shutdown::Both);
+}
+
+fn status_without_status(model: &str, generation: &str) {
+    let unit = Lacking::start(model, generation, &[number::READ_STATUS, number::READ_ALL_STATUS]);
+    let begun = Instant::now();
+    let first = unit.run(&["status"]);
+    let asked = unit.take_asked();
+    println!("generation {generation}, first: {:?}, asked {asked:?}", begun.elapsed());
+    assert!(asked[&number::READ_STATUS] >= 3, "{asked:?}");
+    assert_eq!(first.status.code(), Some(0), "{first:?}");
+    let begun = Instant::now();
+    let second = unit.run(&["status", "--json", "--commands"]);
+    println!("generation {generation}, second: {:?}", begun.elapsed());
+    assert_eq!(second.status.code(), Some(0), "{second:?}");
+    assert_eq!(unit.take_asked(), BTreeMap::new(), "a command known to be absent is not asked again");
+    let json: Value = serde_json::from_str(&second.stdout.join("\n")).expect("JSON");
+    let of = |wanted: u8| {
+        let commands = json["commands"].as_array().expect("a list");
+        commands.iter().find(|known| known["command"] == wanted).map(|known| known["presence"].clone())
+    };
+    assert_eq!(of(number::READ_STATUS), Some("absent".into()), "{json}");
+    assert_eq!(of(number::READ_VERSION).or(of(number::READ_ENCODERS)), Some("present".into()), "{json}");
+    assert!(json["readings"]["main_battery"].is_number(), "what it has is shown: {json}");
+    let text = unit.run(&["status"]).stdout.join("\n");
+    assert!(text.contains("This firmware does not have: read status (90)."), "{text}");
+}
+
+#[test]
+fn a_status_that_no_firmware_tells_is_waited_for_once() {
+    status_without_status("mcp266", "1");
+    status_without_status("mcp236", "4");
+}
+
+#[test]
+fn settings_that_a_firmware_lacks_are_no_failure_and_are_not_blamed_on_the_cable() {
+    const LACKS: &[u8] = &[
+        number::READ_PWM_MODE,
+        number::READ_ADDRESS_MIXED,
+        number::READ_DEFAULT_ACCELS,
+        number::READ_SERIAL_TIMEOUT,
+        number::READ_PRIORITIES,
+    ];
+    let unit = Lacking::start("mcp266", "4", LACKS);
+    // What a quiet line has to show before silence counts comes with the first read.
+    unit.run(&["settings", "read"]);
+    let again = unit.run(&["settings", "read"]);
+    unit.take_asked();
+    let third = unit.run(&["settings", "read"]);
+    assert_eq!(unit.take_asked(), BTreeMap::new());
+    for ending in [again, third] {
+        assert_eq!(ending.status.code(), Some(0), "{ending:?}");
+        let said = ending.stderr.join("\n");
+        assert!(said.contains("this firmware does not have it") && !said.contains("baud rate"), "{said}");
+    }
+}
