@@ -116,7 +116,8 @@ fn print(
         out.line(line)?;
     }
     out.lines(identity.notes.iter().map(|note| format!("Note: {note}")))?;
-    let absent = readings.capabilities.absent().map(|command| titled(identity, command));
+    let settings = identity.family.settings();
+    let absent = readings.capabilities.absent().map(|command| settings.read_phrase(command));
     out.lines(absent.map(|command| format!("Note: This firmware does not have: {command}.")))?;
     if let Some(diagnosis) = &diagnosis {
         out.line(&diagnosis.sentence)?;
@@ -175,10 +176,6 @@ fn learned(identity: &Identity, readings: &Readings) -> Vec<LearnedCommand> {
         quickest_ms: learned.quickest_ms,
     };
     readings.capabilities.entries().map(entry).collect()
-}
-
-fn titled(identity: &Identity, command: u8) -> String {
-    format!("{} ({command})", identity.family.settings().read_title(command))
 }
 
 fn decimals(channel: Channel) -> usize {

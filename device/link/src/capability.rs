@@ -134,7 +134,9 @@ impl CapabilityBook {
 
     /// The unit at an address calls its firmware so: what is known of that counts from now on.
     pub fn introduce(&mut self, address: u8, firmware: &str) {
-        let map = self.keeper.as_ref().map(|keeper| keeper.load(firmware)).unwrap_or_default();
+        let mut map = self.keeper.as_ref().map(|keeper| keeper.load(firmware)).unwrap_or_default();
+        // Another session's silence is not to be judged by what this session's line loses.
+        map.commands.values_mut().filter(|known| !known.is_absent).for_each(|known| known.silent_tries = 0);
         let has_news = !map.is_empty();
         self.units.insert(address, Unit { firmware: firmware.to_owned(), map, has_news });
     }
@@ -291,6 +293,21 @@ mod tests {
         fn keep(&self, firmware: &str, map: &CapabilityMap) {
             self.0.lock().unwrap().insert(firmware.to_owned(), map.clone());
         }
+    }
+
+    #[test]
+    fn silence_on_a_bad_line_is_not_judged_by_the_good_line_of_the_next_session() {
+        let shelf = Arc::new(Shelf::default());
+        let mut bad = CapabilityBook::new(Some(Arc::clone(&shelf) as _));
+        bad.introduce(UNIT, "v1");
+        (0..20).for_each(|command| bad.answered(UNIT, command, MILLISECOND, 1));
+        assert!(!bad.silent(UNIT, 90, 3), "every second reply is lost here");
+        bad.take_news();
+        let mut good = CapabilityBook::new(Some(shelf as _));
+        good.introduce(UNIT, "v1");
+        (0..20).for_each(|command| good.answered(UNIT, command, MILLISECOND, 0));
+        good.take_news();
+        assert!(!good.lacks(UNIT, 90));
     }
 
     #[test]

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::store::Store;
 
 const CAPABILITIES: &str = "capabilities";
-/// No text of a version is longer (MCP manual 2.2.8, command 21), and no name of a file should be.
+/// Longer names of files are cut; the text inside tells two that agree so far apart.
 const LONGEST_NAME: usize = 80;
 
 #[derive(Serialize, Deserialize)]

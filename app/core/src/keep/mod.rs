@@ -2,7 +2,8 @@
 //! what was begun, what their EEPROM held last, and how often it was written.
 //!
 //! Files are replaced in one step. Those that are needed while a controller is worked on are written by a thread of
-//! their own ([`Keeping`]), so that neither the window nor the device thread waits for a disk.
+//! their own ([`Keeping`]), so that neither the window nor the device thread waits for a disk. What firmware answers is a few kB, which the device
+//! thread keeps itself while nothing is armed.
 
 mod backups;
 mod firmware;
