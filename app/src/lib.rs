@@ -51,7 +51,7 @@ pub static FAMILIES: [Family; 2] = [
         #[cfg(feature = "bench")]
         judge: Some(brushwork_tuning_bench::motion_mind::JUDGE),
         #[cfg(feature = "bench")]
-        measures: &[],
+        measures: bench::motion_mind::MEASURES,
     },
 ];
 

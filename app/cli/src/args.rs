@@ -288,6 +288,10 @@ pub struct SimArgs {
     /// Node id on the CAN bus, or a comma-separated list: one simulated unit for each.
     #[arg(long, value_name = "1..127", value_delimiter = ',', requires = "can", value_parser = clap::value_parser!(u8).range(1..=127))]
     pub node: Vec<u8>,
+    /// The baud rate that the served port is set to; --pace gives bytes the time of it. A Motion Mind 3 has 9600 and 19200 by its switch 5,
+    /// which in mode 2 is the direction too.
+    #[arg(long, value_name = "BAUD", conflicts_with = "can")]
+    pub baud: Option<u32>,
     /// Send and take bytes at the port's set baud rate.
     #[arg(long)]
     pub pace: bool,

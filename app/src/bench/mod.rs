@@ -4,14 +4,18 @@
 //! the machine and the build they were taken on: use a release build on a quiet machine.
 
 pub mod arguments;
+mod at_motor;
 mod editor;
 mod figure;
 mod graph;
 mod headless;
 pub mod mcp;
+pub mod motion_mind;
+mod rig;
 mod spread;
 mod tap;
 mod tuning;
+mod watched;
 mod window;
 
 use std::time::Duration;

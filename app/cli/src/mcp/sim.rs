@@ -10,7 +10,7 @@ use brushwork_plant::world::WorldAction;
 use clap::ArgMatches;
 
 use super::script::download::image_of;
-use crate::args::SimArgs;
+use crate::args::{SimArgs, StreamArg};
 use crate::tool::typed;
 use crate::{Exit, Simulated};
 
@@ -28,7 +28,12 @@ pub fn simulate(sim: &ArgMatches) -> Result<Simulated, Exit> {
         seed: args.seed,
         can: args.can,
         nodes: args.node.clone(),
+        rate_bps: args.baud,
     };
+    if args.baud.is_some() && args.port == StreamArg::Usb {
+        return Err(Exit::Usage
+            .saying("A USB port has no baud rate: give --baud with --port rs232, ttl1, ttl2 or ttl3."));
+    }
     let spec = SimSpec::from_options(&options)
         .map_err(|error| Exit::Usage.saying(format!("Could not start the simulated controller: {error}.")))?;
     let stream = args.port.index();

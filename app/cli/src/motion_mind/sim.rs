@@ -26,9 +26,6 @@ pub struct Switches {
     /// Which of its two protocols a Motion Mind 3 speaks.
     #[arg(long, value_enum, value_name = "PROTOCOL", default_value = "binary")]
     protocol: ProtocolArg,
-    /// Switch 5 of a Motion Mind 3; with --pace its bytes take the time of that rate. In mode 2 it is the direction too.
-    #[arg(long, value_name = "9600|19200", value_parser = parse_switched_baud)]
-    baud: Option<u32>,
     /// Switch 7 of a Motion Mind 3: which edges of the encoder count.
     #[arg(long, value_name = "1x|4x", value_parser = decode)]
     encoder: Option<EncoderDecode>,
@@ -48,9 +45,9 @@ enum ProtocolArg {
 
 /// What is wrong with switches that are given to controllers that have none.
 pub fn misplaced(sim: &ArgMatches) -> Option<String> {
-    let Switches { mode, protocol: _, baud, encoder, revision } = typed(sim);
-    let is_given = mode.is_some() || baud.is_some() || encoder.is_some() || revision.is_some();
-    is_given.then(|| format!("--mode, --baud, --encoder and --revision are for --model {MODEL}."))
+    let Switches { mode, protocol: _, encoder, revision } = typed(sim);
+    let is_given = mode.is_some() || encoder.is_some() || revision.is_some();
+    is_given.then(|| format!("--mode, --encoder and --revision are for --model {MODEL}."))
 }
 
 /// The units, and what they are in one line.
@@ -94,7 +91,7 @@ fn spec_of(args: &SimArgs, switches: &Switches) -> Result<MotionMindSpec, String
             ProtocolArg::Binary => Protocol::Binary,
             ProtocolArg::Ascii => Protocol::Text,
         },
-        is_fast: switches.baud.is_none_or(|baud| baud == 19_200),
+        is_fast: is_fast(args.baud)?,
         decode: switches.encoder.unwrap_or_default(),
         revision: switches.revision.unwrap_or(REVISION),
         preset: preset.transpose()?,
@@ -118,9 +115,13 @@ fn check_options(args: &SimArgs) -> Result<(), String> {
     Ok(())
 }
 
-fn parse_switched_baud(text: &str) -> Result<u32, String> {
-    match text.parse() {
-        Ok(baud @ (9_600 | 19_200)) => Ok(baud),
-        _ => Err(format!("\"{text}\" is none of the rates of switch 5: use 9600 or 19200")),
+/// Where switch 5 stands.
+fn is_fast(baud: Option<u32>) -> Result<bool, String> {
+    match baud {
+        None | Some(19_200) => Ok(true),
+        Some(9_600) => Ok(false),
+        Some(other) => {
+            Err(format!("Switch 5 of a Motion Mind 3 has no {other} baud: give --baud 9600 or --baud 19200."))
+        }
     }
 }

@@ -3,13 +3,15 @@
 use std::time::{Duration, Instant};
 
 use brushwork_link::device::Event;
+use brushwork_mcp_sim::controller::turnaround;
 use brushwork_mcp_wire::packet_serial::Generation;
 
 use super::super::Effort;
 use super::super::figure::{Figure, Target};
+use super::super::rig::Rig;
 use super::super::spread::{median, range};
 use super::super::tap::Noted;
-use super::rig::Rig;
+use super::{SERVED, far};
 use brushwork_cli::interrupt::Interrupt;
 
 /// Bits a byte takes on the wire: start, eight data bits, stop.
@@ -36,7 +38,7 @@ fn measure_at(
     effort: Effort,
     interrupt: &Interrupt,
 ) -> Result<Figure, String> {
-    let rig = Rig::start(generation, rate_bps)?;
+    let rig = Rig::start(far("mcp266", generation, rate_bps)?)?;
     let device = rig.connect(interrupt)?;
     let mut sweeps = 0;
     let mut poll_for = |time: Duration| {
@@ -56,7 +58,7 @@ fn measure_at(
         rig.log.clear();
         let sweeps = poll_for(effort.round)?;
         let log = rig.log.all();
-        let figures = LinkUse::of(&log, rig.rate_bps(), rig.turnaround())
+        let figures = LinkUse::of(&log, rig.rate_bps(), turnaround(SERVED, rate_bps))
             .ok_or_else(|| "the controller was not polled".to_owned())?;
         rounds.push((figures, f64::from(sweeps) / effort.round.as_secs_f64()));
     }

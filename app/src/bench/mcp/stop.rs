@@ -5,17 +5,20 @@
 
 use std::time::{Duration, Instant};
 
+use brushwork_link::device::{Drive, DriveCommand};
 use brushwork_link::{Addresses, ConnectTarget, DeviceHandle, Failure, PollRate, PortInfo, Request};
 use brushwork_mcp_wire::packet_serial::{Generation, number};
 use crossbeam_channel::{Receiver, bounded};
 use egui::Key;
 
 use super::super::Effort;
+use super::super::at_motor::{self, Case};
 use super::super::figure::{Figure, Target};
 use super::super::headless::{Headless, key_event};
+use super::super::rig::Rig;
 use super::super::spread::{percentile, scattered};
 use super::super::tap::Noted;
-use super::rig::Rig;
+use super::far;
 use brushwork_cli::interrupt::Interrupt;
 use brushwork_core::keep::{Keeping, Store};
 use brushwork_core::session::SessionError;
@@ -32,6 +35,13 @@ const POLL_PHASE: Duration = Duration::from_millis(20);
 /// How long anything may take.
 const LIMIT: Duration = Duration::from_secs(5);
 
+/// What is stopped at the motor. A RoboClaw discards all that follows a command that it does not know (MCP manual 2.2.4).
+const AT_THE_MOTOR: [(&str, &[Generation]); 2] =
+    [("mcp266", &Generation::ALL), ("roboclaw-2x7a", &[Generation::Gen1, Generation::Gen4])];
+const MOTOR_RATES_BPS: [u32; 3] = [115_200, 38_400, 9_600];
+/// Duty that a stop takes away, at 2000 %/s, the steepest that command 54 has: 5 ms of what is measured.
+const MOTOR_DUTY: f64 = 0.1;
+
 /// The situation in which Stop is pressed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Situation {
@@ -47,6 +57,18 @@ pub fn measure(effort: Effort, interrupt: &Interrupt) -> Result<Vec<Figure>, Str
         let mut bench = StopBench::connect(interrupt)?;
         let latencies_ms = bench.latencies_ms(situation, effort.stops)?;
         figures.extend(figures_of(situation, &latencies_ms, bench.long_reply_bytes));
+    }
+    for (model, generations) in AT_THE_MOTOR {
+        for (generation, rate_bps) in
+            generations.iter().flat_map(|each| MOTOR_RATES_BPS.map(|rate| (*each, rate)))
+        {
+            let case = Case {
+                name: format!("{model} {generation}"),
+                far: far(model, generation, rate_bps)?,
+                drive: (Drive::both(DriveCommand::duty(MOTOR_DUTY)), MOTOR_DUTY),
+            };
+            figures.extend(at_motor::measure(case, effort, interrupt)?);
+        }
     }
     Ok(figures)
 }
@@ -83,7 +105,7 @@ struct StopBench<'a> {
 
 impl<'a> StopBench<'a> {
     fn connect(interrupt: &'a Interrupt) -> Result<Self, String> {
-        let rig = Rig::start(Generation::Gen1, RATE_BPS)?;
+        let rig = Rig::start(far("mcp266", Generation::Gen1, RATE_BPS)?)?;
         let headless = Headless::new();
         let parts = Parts {
             ports: Box::new(NoPorts),

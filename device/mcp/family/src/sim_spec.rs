@@ -18,6 +18,8 @@ pub struct SimSpec {
     pub seed: u64,
     /// The units are nodes of a CAN bus, behind an adapter of this form.
     pub can: Option<Form>,
+    /// What the served port is set to; none for the rate that it leaves the factory with.
+    pub rate_bps: Option<u32>,
 }
 
 /// One simulated controller.
@@ -113,6 +115,8 @@ pub struct SimOptions<'a> {
     pub can: Option<Form>,
     /// Node ids on the CAN bus, one unit for each; none means one unit with the id it leaves the factory with.
     pub nodes: Vec<u8>,
+    /// What the served port is set to.
+    pub rate_bps: Option<u32>,
 }
 
 impl SimSpec {
@@ -131,6 +135,7 @@ impl SimSpec {
             seed: 1,
             can: None,
             nodes: vec![],
+            rate_bps: None,
         };
         for part in parts {
             if part == "can" {
@@ -181,7 +186,8 @@ impl SimSpec {
                 node: NodeId::DEFAULT,
             });
         }
-        Ok(Self { units, seed: options.seed, can: None })
+        let rate_bps = options.rate_bps.map(rate_of).transpose()?;
+        Ok(Self { units, seed: options.seed, can: None, rate_bps })
     }
 
     /// Units on a CAN bus: told apart by their node ids, all at the address they leave the factory with.
@@ -203,7 +209,7 @@ impl SimSpec {
             let node = node.ok_or_else(|| bad_node(&id.to_string()))?;
             units.extend(Self::from_options(&alone)?.units.into_iter().map(|unit| UnitSpec { node, ..unit }));
         }
-        Ok(Self { units, seed: options.seed, can: options.can })
+        Ok(Self { units, seed: options.seed, can: options.can, rate_bps: None })
     }
 }
 
@@ -249,6 +255,17 @@ pub fn parse_address(text: &str) -> Result<u8, String> {
         Some(address @ 0x80..=0x87) => Ok(address),
         _ => Err(format!("\"{text}\" is no address: use 0x80 to 0x87 (128 to 135)")),
     }
+}
+
+/// The rates that public clients and the configuration word know, and what the manual allows around them (MCP manual 2.2.1).
+fn rate_of(rate_bps: u32) -> Result<u32, SimSpecError> {
+    let range = "300 to 1000000";
+    let is_one = (300..=1_000_000).contains(&rate_bps);
+    is_one.then_some(rate_bps).ok_or_else(|| SimSpecError::Value {
+        what: "baud rate",
+        given: rate_bps.to_string(),
+        range,
+    })
 }
 
 fn bad_node(given: &str) -> SimSpecError {

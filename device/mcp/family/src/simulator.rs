@@ -92,16 +92,19 @@ fn controllers(machine: &mut dyn Machine) -> Option<&mut [Controller]> {
 /// # Errors
 /// Several units do not fit on this kind of wire.
 pub fn bus_of(spec: &SimSpec, stream: StreamIndex) -> Result<Bus, SimulatorError> {
-    let units = spec.units.iter().map(|unit| controller(unit, spec.seed)).collect::<Result<Vec<_>, _>>()?;
+    let made = |unit| {
+        let mut config = config_of(unit, spec.seed);
+        if let Some(rate_bps) = spec.rate_bps {
+            config.set_rate(stream, rate_bps);
+        }
+        Controller::new(config)
+    };
+    let units = spec.units.iter().map(made).collect::<Result<Vec<_>, ParamsError>>()?;
     let bus = match spec.can {
         Some(form) => Bus::on_can(units, form),
         None => Bus::new(units, stream),
     };
     bus.map_err(|error| SimulatorError::Line(error.to_string()))
-}
-
-fn controller(unit: &UnitSpec, seed: u64) -> Result<Controller, ParamsError> {
-    Controller::new(config_of(unit, seed))
 }
 
 /// What a unit is made of.

@@ -73,6 +73,7 @@ impl Rig {
             seed: args.seed,
             can: None,
             nodes: vec![],
+            rate_bps: None,
         };
         let spec = SimSpec::from_options(&options).map_err(|error| reported(&error))?;
         let unit = spec.units.first().ok_or_else(|| reported(&"no model is named"))?;

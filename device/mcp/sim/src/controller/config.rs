@@ -7,6 +7,7 @@ use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::models::{Family, Model};
 use brushwork_mcp_wire::packet_serial::{Address, Generation};
 use brushwork_plant::EncoderKind;
+use brushwork_plant::machine::StreamIndex;
 use brushwork_plant::presets;
 use brushwork_plant::world::WorldParams;
 
@@ -71,6 +72,13 @@ impl ControllerConfig {
     pub fn set_node(&mut self, node: NodeId) {
         let mut settings = self.stored_settings();
         settings.unit.can_node_id = node.get();
+        self.settings = Some(settings);
+    }
+
+    /// Sets a stream to another rate than the one it leaves the factory with.
+    pub fn set_rate(&mut self, stream: StreamIndex, rate_bps: u32) {
+        let mut settings = self.stored_settings();
+        settings.streams[stream.index()].rate_bps = rate_bps;
         self.settings = Some(settings);
     }
 

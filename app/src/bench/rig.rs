@@ -1,4 +1,4 @@
-//! A paced simulated controller on a real pseudo-terminal (TCP where there are none), tapped on the client's side.
+//! A paced simulated controller on a real pseudo-terminal (TCP where there are none), tapped on the client's side and watched at its bridge.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -6,40 +6,58 @@ use std::time::{Duration, Instant};
 
 use brushwork_link::device::{Addresses, DeviceHandle, DeviceOptions, DeviceThread, Event, PollRate};
 use brushwork_link::transport::{SerialTransport, Stream, TcpTransport, Transport};
-use brushwork_link::{Clock, SystemClock};
-use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig, turnaround};
-use brushwork_mcp_wire::packet_serial::{Address, Generation};
-use brushwork_plant::machine::StreamIndex;
+use brushwork_link::{Clock, FamilyChoice, SystemClock};
+use brushwork_plant::machine::{Machine, StreamIndex};
 use brushwork_plant::server::{Endpoint, Server, ServerOptions, SimHandle};
 
-use super::super::tap::{Log, Tap};
+use super::tap::{Log, Tap};
+use super::watched::{Bridge, Watched};
 use brushwork_cli::interrupt::Interrupt;
 
-/// The stream that is served: one whose rate counts.
-const SERVED: StreamIndex = StreamIndex::Uart1;
 /// How long the device thread may take to find the controller.
 const FIND_LIMIT: Duration = Duration::from_secs(10);
 
+/// The controller at the far end of a wire.
+pub struct Far {
+    /// The simulated unit.
+    pub machine: Box<dyn Machine>,
+    /// Its stream that is served: one whose rate counts.
+    pub index: StreamIndex,
+    /// What that stream is to a client.
+    pub stream: Stream,
+    /// What it speaks.
+    pub family: FamilyChoice,
+    /// Its address.
+    pub address: u8,
+}
+
 /// A controller at the far end of a wire.
 pub struct Rig {
-    server: SimHandle<Bus>,
+    server: SimHandle<Watched>,
     rate_bps: u32,
+    options: DeviceOptions,
     /// What passes on the wire.
     pub log: Log,
+    /// What the controller's bridge does.
+    pub bridge: Bridge,
 }
 
 impl Rig {
-    /// An MCP266 of this generation whose TTL1 stream is set to `rate_bps`.
-    pub fn start(generation: Generation, rate_bps: u32) -> Result<Self, String> {
-        let config = ControllerConfig { generation, ..ControllerConfig::default() };
-        let unit = |config| Controller::new(config).map_err(|error| error.to_string());
-        let mut settings = unit(config.clone())?.settings();
-        settings.streams[SERVED.index()].rate_bps = rate_bps;
-        let unit = unit(ControllerConfig { settings: Some(settings), ..config })?;
-        let options = ServerOptions { stream: SERVED, pace: true, ..ServerOptions::default() };
-        let server = Server::spawn(Bus::single(unit, SERVED), options, &endpoint())
-            .map_err(|error| error.to_string())?;
-        Ok(Self { server, rate_bps, log: Log::default() })
+    /// Puts the controller on a wire of the rate that its stream is set to.
+    pub fn start(far: Far) -> Result<Self, String> {
+        let rate_bps = far.machine.bits_per_second(far.index);
+        let bridge = Bridge::default();
+        let machine = Watched::new(far.machine, bridge.clone());
+        let options = ServerOptions { stream: far.index, pace: true, ..ServerOptions::default() };
+        let server = Server::spawn(machine, options, &endpoint()).map_err(|error| error.to_string())?;
+        let options = DeviceOptions {
+            addresses: Addresses::Only(far.address),
+            family: far.family,
+            stream: Some(far.stream),
+            poll: PollRate::Fastest,
+            ..DeviceOptions::default()
+        };
+        Ok(Self { server, rate_bps, options, log: Log::default(), bridge })
     }
 
     /// What lies between the ends, for notes.
@@ -50,11 +68,6 @@ impl Rig {
     /// Bits per second of the wire.
     pub fn rate_bps(&self) -> u32 {
         self.rate_bps
-    }
-
-    /// The time the simulator states between a request and its reply.
-    pub fn turnaround(&self) -> Duration {
-        turnaround(SERVED, self.rate_bps)
     }
 
     /// A device thread at the near end that polls as fast as it can, once it has found the controller.
@@ -74,14 +87,8 @@ impl Rig {
     /// The same, before it has found anything.
     pub fn open(&self) -> Result<DeviceHandle, String> {
         let tap = Tap::new(self.transport()?, self.log.clone());
-        let options = DeviceOptions {
-            addresses: Addresses::Only(Address::DEFAULT.get()),
-            stream: Some(Stream::Ttl1),
-            poll: PollRate::Fastest,
-            ..DeviceOptions::default()
-        };
         let clock: Arc<dyn Clock> = SystemClock::shared();
-        DeviceThread::spawn(Box::new(tap), clock, options).map_err(|error| error.to_string())
+        DeviceThread::spawn(Box::new(tap), clock, self.options.clone()).map_err(|error| error.to_string())
     }
 
     fn transport(&self) -> Result<Box<dyn Transport>, String> {
