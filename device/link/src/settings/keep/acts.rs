@@ -129,11 +129,13 @@ fn write_over(
     begin(wire, Act::Write, before, wanted.clone(), keeper)
         .map_err(|failure| WriteError::NotKept { failure })?;
     let mut result = write(wire, table, wanted, options);
-    if let Ok(report) = &mut result
-        && !report.is_complete()
-        && report.ended_early.is_none()
-    {
-        look_again(wire, table, &before.image, report);
+    if let Ok(report) = &mut result {
+        // What was read before a restart is stale: only a look that finds nothing new ends it.
+        let mut looks = 0;
+        while report.ended_early.is_none() && looks < LOOKS && look_again(wire, table, &before.image, report)
+        {
+            looks += 1;
+        }
     }
     let ending = match &result {
         Ok(report) if is_conclusive(report) => Ending::Known,
@@ -144,10 +146,25 @@ fn write_over(
     result
 }
 
-/// A unit that restarted in the middle has lost more than what came back otherwise: what had been read back before,
-/// and everything else that was not in its EEPROM. Reads all of it once more.
-fn look_again(wire: &mut dyn Wire, table: &SettingsTable, before: &SettingsImage, report: &mut WriteReport) {
-    let Ok(after) = read_all(wire, *table.subject()) else { return };
+/// A unit that restarted in the middle, while it was read for the backup too, has lost more than what came back otherwise: what had been read
+/// back before, and everything else that was not in its EEPROM. No firmware tells that it restarted, so all is read once more, whatever the
+/// write itself found: a restart takes 50 ms, reading back takes longer.
+///
+/// Whether something was found that was not known.
+fn look_again(
+    wire: &mut dyn Wire,
+    table: &SettingsTable,
+    before: &SettingsImage,
+    report: &mut WriteReport,
+) -> bool {
+    let after = match read_all(wire, *table.subject()) {
+        Ok(after) => after,
+        Err(failure) => {
+            report.ended_early = Some(failure);
+            return false;
+        }
+    };
+    let known = report.clone();
     report.transactions += after.transactions;
     for row in report.rows.iter_mut().filter(|row| row.state == RowState::Taken) {
         if let Some(now) = after.image.get(&row.key).filter(|now| *now != row.wanted) {
@@ -163,9 +180,16 @@ fn look_again(wire: &mut dyn Wire, table: &SettingsTable, before: &SettingsImage
         let row = table.row(&difference.key)?;
         Some(format!("{}, which was not asked for. {RESTARTED}", difference.describe(row)))
     };
-    let sentences: Vec<String> = disturbed.filter_map(sentence).collect();
-    report.warnings.extend(sentences);
+    for sentence in disturbed.filter_map(sentence) {
+        if !report.warnings.contains(&sentence) {
+            report.warnings.push(sentence);
+        }
+    }
+    (&known.rows, &known.warnings) != (&report.rows, &report.warnings)
 }
+
+/// A unit that restarts more often than this while it is looked at is not waited for.
+const LOOKS: usize = 4;
 
 const RESTARTED: &str = "The controller seems to have restarted meanwhile.";
 const LOST_AGAIN: &str =
