@@ -22,6 +22,8 @@ const RECOVERY_LIMIT: Duration = Duration::from_millis(500);
 const STOLEN: Duration = Duration::from_millis(10);
 /// No reply gets much more than this for that reason.
 const STOLEN_MOST: Duration = Duration::from_millis(300);
+/// Work of a controller beside which its reply still tells how late the line is: registers are read within it, a whole EEPROM is not.
+const SHORT_WORK: Duration = Duration::from_millis(60);
 /// Of what is heard without a request that it answers, no more is kept: the longest reply, thrice.
 const MOST_HEARD: usize = 2048;
 /// Waiting for bytes is cut into slices of this, so that a Stop is seen in time.
@@ -410,16 +412,16 @@ impl Exchange {
         self.longest_turnaround() > self.transport.latency()
     }
 
-    /// Learns from a reply how long the line takes. What a controller works on for long tells nothing. A reply to a request that was sent again may be
+    /// Learns from a reply how long the line takes beyond the controller's own work; what it works on for longer tells nothing. A reply to a request that was sent again may be
     /// that to the first (Karn's rule, RFC 6298, section 3): it counts from there unless it is as quick as others were.
     fn learn(&mut self, request: &Outgoing<'_>, span: Span, first_at: Duration) {
-        if !request.patience.is_zero() || self.is_searching() {
+        if request.patience > SHORT_WORK || self.is_searching() {
             return;
         }
         let bytes = u32::try_from(request.bytes.len() + request.reply_length).unwrap_or(u32::MAX);
         let on_the_wire = self.transport.byte_time().unwrap_or_default().saturating_mul(bytes);
-        let since =
-            |at: Duration| span.replied_at.saturating_sub(at).saturating_sub(on_the_wire + self.stolen);
+        let known = on_the_wire + request.patience + self.stolen;
+        let since = |at: Duration| span.replied_at.saturating_sub(at).saturating_sub(known);
         let is_its_own = self.turnaround.is_usual(since(span.requested_at));
         self.turnaround.learn(since(if is_its_own { span.requested_at } else { first_at }));
     }

@@ -41,30 +41,9 @@ impl Search for MotionMinds {
         line: &mut Line<'_>,
         options: &DeviceOptions,
     ) -> Result<Vec<Box<dyn Controller>>, DiscoverError> {
-        let heard_before = line.exchange().statistics().bytes_in;
-        let found = match options.addresses {
-            Addresses::Only(number) => match Address::unit(number) {
-                Some(address) => patiently(line, address)?.into_iter().collect(),
-                None => Vec::new(),
-            },
-            Addresses::Factory => patiently(line, Address::FACTORY)?.into_iter().collect(),
-            Addresses::These(set) => {
-                let mut found = Vec::new();
-                for address in set.iter().filter_map(Address::unit) {
-                    found.extend(patiently(line, address)?);
-                }
-                found
-            }
-            Addresses::Scan => scan(line)?,
-        };
-        if found.is_empty() {
-            return Err(nothing_there(line, options.addresses, heard_before));
-        }
-        let mut units: Vec<Box<dyn Controller>> = Vec::new();
-        for speaker in found {
-            units.push(Box::new(identify(line, speaker, options.simulated)?));
-        }
-        Ok(units)
+        let units = find(line, options);
+        line.exchange().set_patience(Duration::ZERO);
+        units
     }
 
     /// The unit at the factory address first, in whichever protocol it speaks: all 98 addresses are asked of a bus that is known to have one. Of a
@@ -107,15 +86,60 @@ impl Search for MotionMinds {
     }
 }
 
-/// The unit at one address that is worth waiting for.
-fn patiently(line: &mut Line<'_>, address: Address) -> Result<Option<Speaker>, ExchangeError> {
+fn find(line: &mut Line<'_>, options: &DeviceOptions) -> Result<Vec<Box<dyn Controller>>, DiscoverError> {
     let heard_before = line.exchange().statistics().bytes_in;
-    for patience in PATIENCE {
+    let found = match options.addresses {
+        Addresses::Only(number) => match Address::unit(number) {
+            Some(address) => patiently(line, address)?.into_iter().collect(),
+            None => Vec::new(),
+        },
+        Addresses::Factory => patiently(line, Address::FACTORY)?.into_iter().collect(),
+        Addresses::These(set) => {
+            let mut found = Vec::new();
+            for address in set.iter().filter_map(Address::unit) {
+                found.extend(patiently(line, address)?);
+            }
+            found
+        }
+        Addresses::Scan => scan(line)?,
+    };
+    if found.is_empty() {
+        return Err(nothing_there(line, options.addresses, heard_before));
+    }
+    // A line that needed patience keeps it until all units are known: what is learned of its lateness is learned from their replies.
+    let lateness = found.iter().map(|found| found.lateness).max().unwrap_or_default();
+    line.exchange().set_patience(lateness);
+    let mut units: Vec<Box<dyn Controller>> = Vec::new();
+    for Found { speaker, .. } in found {
+        units.push(Box::new(identify(line, speaker, options.simulated)?));
+    }
+    Ok(units)
+}
+
+/// A unit that answered.
+struct Found {
+    speaker: Speaker,
+    /// How much longer than usual its line must be waited for: what its answer took, and a quarter for one that takes longer.
+    lateness: Duration,
+}
+
+/// The unit at one address that is worth waiting for.
+fn patiently(line: &mut Line<'_>, address: Address) -> Result<Option<Found>, ExchangeError> {
+    let heard_before = line.exchange().statistics().bytes_in;
+    for (round, patience) in PATIENCE.into_iter().enumerate() {
+        if round > 0 {
+            // What the round before asked for may still be on its way, and answers nothing any more.
+            let (exchange, watch) = line.parts();
+            exchange.drain(PATIENCE[1] - PATIENCE[0], watch)?;
+        }
         for protocol in Protocol::ALL {
             change_to(line, protocol)?;
             let speaker = Speaker::new(address, protocol);
+            let asked_at = line.exchange().clock().now();
             if is_there(line, speaker, patience)? {
-                return Ok(Some(speaker));
+                let took = line.exchange().clock().now().saturating_sub(asked_at);
+                let lateness = if took > SCAN_PATIENCE[0] { took * 5 / 4 } else { Duration::ZERO };
+                return Ok(Some(Found { speaker, lateness }));
             }
         }
     }
@@ -126,21 +150,21 @@ fn patiently(line: &mut Line<'_>, address: Address) -> Result<Option<Speaker>, E
     let loose = Speaker { is_loose: true, ..Speaker::new(address, Protocol::Text) };
     change_to(line, Protocol::Text)?;
     let [.., patience] = PATIENCE;
-    Ok(loose.probe(line, number::ADDRESS, patience)?.map(|_| loose))
+    let answer = loose.probe(line, number::ADDRESS, patience)?;
+    Ok(answer.map(|_| Found { speaker: loose, lateness: Duration::ZERO }))
 }
 
 /// All units: the factory address first, in both protocols; then every other one in the protocol that it spoke, since units of one
 /// bus must speak the same. Where nobody has the factory address, all are asked in binary, and if none answers, all in text.
-fn scan(line: &mut Line<'_>) -> Result<Vec<Speaker>, ExchangeError> {
+fn scan(line: &mut Line<'_>) -> Result<Vec<Found>, ExchangeError> {
     line.report_progress(0, usize::from(*Address::UNITS.end()), "the factory address");
     if let Some(first) = patiently(line, Address::FACTORY)? {
-        let mut found = vec![first];
-        found.extend(ask_each(line, first.protocol)?);
-        return Ok(found);
+        let others = ask_each(line, first.speaker.protocol, first.lateness)?;
+        return Ok(std::iter::once(first).chain(others).collect());
     }
     for protocol in Protocol::ALL {
         change_to(line, protocol)?;
-        let found = ask_each(line, protocol)?;
+        let found = ask_each(line, protocol, Duration::ZERO)?;
         if !found.is_empty() {
             return Ok(found);
         }
@@ -148,16 +172,21 @@ fn scan(line: &mut Line<'_>) -> Result<Vec<Speaker>, ExchangeError> {
     Ok(Vec::new())
 }
 
-/// The units at the other addresses than the factory's.
-fn ask_each(line: &mut Line<'_>, protocol: Protocol) -> Result<Vec<Speaker>, ExchangeError> {
+/// The units at the other addresses than the factory's. A line that is late by 400 ms is asked for 40 s; it can be told which address to ask.
+fn ask_each(
+    line: &mut Line<'_>,
+    protocol: Protocol,
+    lateness: Duration,
+) -> Result<Vec<Found>, ExchangeError> {
     let of = usize::from(*Address::UNITS.end());
     let mut found = Vec::new();
     for number in Address::UNITS.skip(1) {
         line.report_progress(usize::from(number) - 1, of, &format!("address {number}, {protocol}"));
         let Some(address) = Address::unit(number) else { continue };
         let speaker = Speaker::new(address, protocol);
-        if is_there(line, speaker, SCAN_PATIENCE[usize::from(protocol == Protocol::Text)])? {
-            found.push(speaker);
+        let patience = SCAN_PATIENCE[usize::from(protocol == Protocol::Text)].max(lateness);
+        if is_there(line, speaker, patience)? {
+            found.push(Found { speaker, lateness });
         }
     }
     Ok(found)
