@@ -14,6 +14,7 @@ pub mod family;
 pub mod interrupt;
 mod list;
 pub mod mcp;
+mod messages;
 mod monitor;
 pub mod motion_mind;
 pub mod new_file;

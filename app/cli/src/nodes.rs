@@ -54,7 +54,7 @@ fn print(args: &NodesArgs, nodes: &[Identity], out: &mut Output) -> Result<Exit,
                 node.address.to_string(),
                 node.version_text.clone(),
                 node.generation.number().to_string(),
-                node.notes.join(" "),
+                node.notes.iter().map(ToString::to_string).collect::<Vec<_>>().join(" "),
             ]
         })
         .collect();

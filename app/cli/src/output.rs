@@ -1,5 +1,6 @@
 //! Standard output that survives a closed pipe: a failed write is an answer, not a panic.
 
+use std::fmt::Display;
 use std::io::{self, Write};
 
 /// Why printing stopped.
@@ -38,15 +39,14 @@ impl Output {
     }
 
     /// Writes one line.
-    pub fn line(&mut self, text: impl AsRef<str>) -> Result<(), OutputError> {
-        self.writer.write_all(text.as_ref().as_bytes())?;
-        self.writer.write_all(b"\n")?;
+    pub fn line(&mut self, text: impl Display) -> Result<(), OutputError> {
+        self.writer.write_all(format!("{text}\n").as_bytes())?;
         self.writer.flush()?;
         Ok(())
     }
 
     /// Writes lines.
-    pub fn lines(&mut self, lines: impl IntoIterator<Item = impl AsRef<str>>) -> Result<(), OutputError> {
+    pub fn lines(&mut self, lines: impl IntoIterator<Item = impl Display>) -> Result<(), OutputError> {
         lines.into_iter().try_for_each(|line| self.line(line))
     }
 
@@ -85,8 +85,8 @@ impl Output {
 }
 
 /// Says something to the person at the terminal; a closed standard error is nobody to tell.
-pub fn say(text: impl AsRef<str>) {
-    let _ = writeln!(io::stderr(), "{}", text.as_ref());
+pub fn say(text: impl Display) {
+    let _ = writeln!(io::stderr(), "{text}");
 }
 
 fn padded<'a>(cells: impl Iterator<Item = &'a str>, widths: &[usize]) -> String {

@@ -139,7 +139,7 @@ fn warnings_of(report: &StopReport, units: &[Identity]) -> Vec<String> {
         }
         let several = report.units.len() > 1;
         let driven = unit.still_driven_by.iter();
-        lines.extend(driven.map(|text| if several { format!("{place}: {text}") } else { text.clone() }));
+        lines.extend(driven.map(|text| if several { format!("{place}: {text}") } else { text.to_string() }));
         lines.extend(unit.failures.iter().map(ToString::to_string));
     }
     lines

@@ -2,11 +2,12 @@
 //!
 //! The typed errors of the layers below stay what programs match on; this is their last form.
 
-use serde::{Deserialize, Serialize};
+use brushwork_values::Message;
+use serde::Serialize;
 use std::fmt;
 
 /// One failure as a sentence, kept in its parts so that a window can lay them out.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Failure {
     /// What was tried, as a bare verb phrase: "read the firmware version".
     pub tried: String,
@@ -27,6 +28,14 @@ impl Failure {
         remedy: impl Into<String>,
     ) -> Self {
         Self { tried: tried.into(), on: on.into(), came_back: came_back.to_string(), remedy: remedy.into() }
+    }
+}
+
+impl Failure {
+    /// The failure as one sentence among others.
+    #[must_use]
+    pub fn message(&self) -> Message {
+        Message::error(self.clone())
     }
 }
 

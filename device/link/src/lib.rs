@@ -13,11 +13,13 @@ pub mod driver;
 pub mod exchange;
 pub mod failure;
 pub mod family;
+pub mod messages;
 pub mod settings;
 pub mod transport;
 pub mod unit;
 pub mod wire;
 
+pub use brushwork_values::Message;
 pub use clock::{Clock, SystemClock, VirtualClock};
 pub use device::{
     Addresses, ArmScope, Channel, DeviceHandle, Drive, DriveCommand, Event, Identity, Job, JobEnding,

@@ -6,4 +6,5 @@ mod layers;
 mod licences;
 mod limited;
 mod map;
+mod messages;
 mod tidy;

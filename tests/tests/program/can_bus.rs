@@ -86,7 +86,7 @@ fn nodes_are_found_in_both_forms_and_generations_and_nothing_moves() {
             ];
             assert_eq!(reported, expected, "{form:?}");
             assert!(
-                found[0].notes.iter().any(|note| note.contains("product 0x0000010A")),
+                found[0].notes.iter().any(|note| note.to_string().contains("product 0x0000010A")),
                 "{:?}",
                 found[0].notes
             );

@@ -649,7 +649,11 @@ fn the_public_simulator_is_connected_to_though_it_answers_the_read_of_all_regist
             Some(Protocol::Text),
             "{family}"
         );
-        assert!(identity.notes.iter().any(|note| note.contains("simulator")), "{:?}", identity.notes);
+        assert!(
+            identity.notes.iter().any(|note| note.to_string().contains("simulator")),
+            "{:?}",
+            identity.notes
+        );
         let seen: Vec<f64> = link
             .events
             .iter()

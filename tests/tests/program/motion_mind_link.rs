@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use brushwork_link::Failure;
 use brushwork_link::FamilyChoice;
+use brushwork_link::Message;
 use brushwork_link::device::{
     Addresses, ArmScope, Channel, DeviceOptions, DisarmReason, Drive, DriveCommand, Event, Identity, Job,
     JobContext, JobEnding, Request,
@@ -484,7 +485,7 @@ fn stop_takes_a_slow_ramp_away_and_puts_it_back() {
         .unwrap();
         assert!(link.arm(ArmScope::Pwm));
         let warned = link.events.iter().any(|(_, event)| {
-            matches!(event, Event::Armed { warnings, .. } if warnings.iter().any(|text| text.contains("5.2 s")))
+            matches!(event, Event::Armed { warnings, .. } if warnings.iter().any(|text| text.to_string().contains("5.2 s")))
         });
         assert!(warned, "{:?}", link.events);
         drive(&link, DriveCommand::duty(1.0));
@@ -522,7 +523,7 @@ fn a_loop_that_shakes_its_motor_is_switched_off_by_stop_until_the_motor_stands()
         let stops = link.stops();
         assert!(stops[0].confirmed(), "{protocol}: {stops:?}");
         assert_eq!(register(&link, PWMOUT), 0, "{protocol}");
-        let said = stops[0].units[0].still_driven_by.concat();
+        let said = text_of(&stops[0].units[0].still_driven_by);
         assert!(said.contains("DISABLEPID"), "{protocol}: it was still, so the test tests nothing: {said}");
         assert!(!stops[0].left_a_loop_off(), "{protocol}: {said}");
         assert_eq!(register(&link, FUNCTION), 0, "{protocol}: as it was");
@@ -588,7 +589,7 @@ fn arming_says_that_no_time_out_covers_the_death_of_the_program_and_refuses_what
     assert!(link.arm(ArmScope::Pwm));
     assert!(link.events.iter().any(|(_, event)| matches!(
         event,
-        Event::Armed { controller_timeout: None, warnings, .. } if warnings[0].contains("no serial time-out")
+        Event::Armed { controller_timeout: None, warnings, .. } if warnings[0].to_string().contains("no serial time-out")
     )));
     let mut link = connected(Mode::SerialPid, Protocol::Binary);
     job(&mut link, |wire| {
@@ -611,7 +612,7 @@ fn warnings(link: &Link) -> Vec<String> {
         Event::Armed { warnings, .. } => Some(warnings.clone()),
         _ => None,
     });
-    said.flatten().collect()
+    said.flatten().map(|message| message.to_string()).collect()
 }
 
 #[test]
@@ -662,7 +663,7 @@ fn a_loop_that_cannot_hold_its_motor_is_left_off_which_is_said_and_arming_waits_
         link.run_for(ms(6_000));
         let stop = link.stops()[0].clone();
         assert!(stop.left_a_loop_off(), "{protocol}: {stop:?}");
-        let said = stop.units[0].still_driven_by.concat();
+        let said = text_of(&stop.units[0].still_driven_by);
         assert!(said.contains("left switched off (DISABLEPID"), "{protocol}: {said}");
         let off = before | i64::from(function::DISABLEPID);
         assert_eq!(register(&link, FUNCTION), off, "{protocol}");
@@ -1002,11 +1003,15 @@ fn a_loop_that_is_switched_off_is_told_when_its_unit_is_found() {
             &Command::Write { register: FUNCTION, value: function::DISABLEPID.into() },
         );
         link.run_for(ms(1_500));
-        let notes = identities(&link)[0].notes.concat();
+        let notes = text_of(&identities(&link)[0].notes);
         assert!(notes.contains("DISABLEPID"), "{protocol}: {notes}");
         tame(&link);
         assert!(link.arm(ArmScope::Position), "{protocol}: {:?}", failures(&link));
         assert!(warnings(&link).iter().any(|text| text.contains("DISABLEPID")), "{protocol}");
         assert_eq!(register(&link, FUNCTION), 0, "{protocol}");
     }
+}
+
+fn text_of(messages: &[Message]) -> String {
+    messages.iter().map(ToString::to_string).collect()
 }

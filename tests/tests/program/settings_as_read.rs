@@ -154,8 +154,10 @@ fn any_registers_come_back_to_the_last_bit_in_every_model_and_generation() {
                 let asked =
                     stored.changes_for(&table, &ram, true).unwrap_or_else(|error| panic!("{what}: {error}"));
                 let planned = plan(&table, &ram, &asked.wanted, AS_READ).expect("it can be written");
-                let reported =
-                    planned.warnings.iter().filter(|text| text.ends_with("It is written as it was read."));
+                let reported = planned
+                    .warnings
+                    .iter()
+                    .filter(|text| text.to_string().ends_with("It is written as it was read."));
                 let unusual = unusual(&table, &asked.wanted);
                 assert!(unusual > 0, "{what}: the state is not strange enough");
                 assert_eq!(reported.count(), unusual, "{what}: {:#?}", planned.warnings);
@@ -245,8 +247,10 @@ fn any_registers_of_a_motion_mind_come_back_to_the_last_bit_in_both_protocols() 
             let wanted = stored.changes_for(&table, &ram, false).expect("it fits").wanted;
             let options = WriteOptions { own_stream: None, simulated: false, as_read: true };
             let planned = plan(&table, &ram, &wanted, options).expect("it can be written");
-            let reported =
-                planned.warnings.iter().filter(|text| text.ends_with("It is written as it was read."));
+            let reported = planned
+                .warnings
+                .iter()
+                .filter(|text| text.to_string().ends_with("It is written as it was read."));
             assert_eq!(reported.count(), unusual(&table, &wanted), "{what}: {:#?}", planned.warnings);
             let (copy, on) = (table.clone(), wanted.clone());
             let report = job(&mut link, move |wire| {

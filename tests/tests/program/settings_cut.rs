@@ -354,7 +354,7 @@ fn a_short_power_loss_within_a_write_is_told_by_the_write_itself() {
             continue;
         }
         incomplete += 1;
-        let told_by_report = report.warnings.iter().any(|warning| warning.contains("velocity P"));
+        let told_by_report = report.warnings.iter().any(|warning| warning.to_string().contains("velocity P"));
         let told_later = cut
             .reported
             .as_ref()
@@ -507,6 +507,6 @@ fn a_plug_pulled_within_a_save_leaves_the_question_of_eeprom_open_and_says_so() 
         let now = next_connection(&line);
         let reported = keeper.reported(&now).expect("the save was cut");
         assert!(reported.is_all_new(), "row {row}: {reported:?}");
-        assert!(reported.headline().contains("save again to be sure"), "{}", reported.headline());
+        assert!(reported.headline().to_string().contains("save again to be sure"), "{}", reported.headline());
     }
 }

@@ -62,7 +62,9 @@ impl Family for McpCommands {
 
     fn conflicts(&self, table: &SettingsTable, image: &SettingsImage) -> Vec<Said> {
         let conflicts = settings::conflicts(table, &|key| image.get(key)).into_iter();
-        conflicts.map(|conflict| Said { data: json!(conflict), sentence: conflict.sentence }).collect()
+        conflicts
+            .map(|conflict| Said { data: json!(conflict), sentence: conflict.sentence.to_string() })
+            .collect()
     }
 
     fn follower(&self, generation: Option<u8>) -> Box<dyn Follower> {

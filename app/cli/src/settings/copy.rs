@@ -13,7 +13,7 @@ pub fn run(args: &CopyMotorArgs, out: &mut Output, interrupt: &Interrupt) -> Res
     let ram = controller.read()?;
     let copied = copy_motor(&ram.table, &ram.image, usize::from(args.from), controller.identity().simulated);
     let mut wanted = Wanted::of(copied.wanted);
-    wanted.left_out_lines.clone_from(&copied.left_out);
+    wanted.left_out_lines = copied.left_out.iter().map(ToString::to_string).collect();
     wanted.left_out = copied.left_out;
     write::carry_out(&controller, &ram, &wanted, &args.how, out)
 }

@@ -18,7 +18,7 @@ pub fn parse(table: &SettingsTable, assignments: &[Assignment]) -> Result<Settin
         let parsed = match table.row(key) {
             None => Err(unknown(table, key)),
             Some(_) if wanted.get(key).is_some() => Err(format!("{key} is given twice.")),
-            Some(row) => row.parse(value),
+            Some(row) => row.parse(value).map_err(|why| why.to_string()),
         };
         match parsed {
             Ok(value) => wanted.set(key, value),

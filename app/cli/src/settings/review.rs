@@ -1,7 +1,7 @@
 //! What a write will do, for people and as JSON: the changes with their units, and the commands that make them.
 
 use brushwork_link::settings::{Plan, Refusal, diff, plan};
-use brushwork_link::{SettingValue, SettingsImage, SettingsTable, UnitAddress, WriteOptions};
+use brushwork_link::{Message, SettingValue, SettingsImage, SettingsTable, UnitAddress, WriteOptions};
 use brushwork_values::hex;
 use serde::Serialize;
 
@@ -17,7 +17,7 @@ pub struct Review {
     /// Settings that are set past the wire of a simulated controller: key and raw value.
     pub past_the_wire: Vec<(String, i64)>,
     /// What should be known before it is done.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Message>,
 }
 
 /// One setting that changes.
@@ -138,7 +138,7 @@ fn commands(table: &SettingsTable, plan: &Plan, address: UnitAddress) -> Vec<Pla
     let generation = table.subject().generation;
     let planned = |step: &brushwork_link::settings::Step| PlannedCommand {
         text: step.words(address, generation),
-        bytes: step.bytes(address, generation).map_or_else(|error| error, |bytes| hex(&bytes)),
+        bytes: step.bytes(address, generation).map_or_else(|why| why.to_string(), |bytes| hex(&bytes)),
         keys: step.keys.clone(),
     };
     plan.steps.iter().map(planned).collect()

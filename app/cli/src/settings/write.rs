@@ -1,15 +1,18 @@
 //! `brushwork settings write` and `import`: shows the changes, asks, writes, and names what did not take.
 
+use brushwork_link::Message;
 use brushwork_link::settings::{
     Known, OpenedProfile, Profile, ReadReport, Refusal, SaveReport, SaveVerdict, SettingsImage,
     SettingsTable, WriteOptions, WriteReport, changes,
 };
 use serde_json::{Value, json};
+use std::fmt::Display;
 
 use super::args::{Assignment, ImportArgs, UnfinishedArgs, WriteArgs, WriteHow};
 use super::controller::Controller;
 use super::review::{self, Review};
 use super::{ask, keys, memory, profile, read};
+use crate::messages::CliSettingsMessage;
 use crate::{Exit, Interrupt, Output, say};
 use brushwork_core::settings::{Act, Done, counted, fitted, merged, write_options};
 
@@ -33,11 +36,11 @@ pub struct Wanted {
     /// The values that differ.
     pub changes: SettingsImage,
     /// A sentence for each setting of the profile that cannot be written here.
-    pub left_out: Vec<String>,
+    pub left_out: Vec<Message>,
     /// The same as lines, with those that share a reason put together.
     pub left_out_lines: Vec<String>,
     /// What fitting a profile to this controller changed, a sentence each.
-    upgraded: Vec<String>,
+    upgraded: Vec<Message>,
     /// Those of them that were read from a unit once, so that they are written as they are.
     taken: SettingsImage,
 }
@@ -121,7 +124,7 @@ fn upgraded(
     ram: &ReadReport,
     opened: OpenedProfile,
     how: &WriteHow,
-) -> Result<(Profile, Vec<String>), Exit> {
+) -> Result<(Profile, Vec<Message>), Exit> {
     let (profile, sentences) = fitted(opened, &ram.table);
     if sentences.is_empty() {
         return Ok((profile, sentences));
@@ -201,11 +204,7 @@ fn review(
         .map_err(cannot_be)?;
     let touches_streams = review.changes.iter().any(|change| change.key.starts_with("stream."));
     if touches_streams && controller.client.stream.is_none() {
-        review.warnings.push(
-            "It is not known which of the controller's streams this port is wired to; if it is one that \
-             changes, the link may be lost. A target such as /dev/ttyUSB0,stream=ttl1 says it."
-                .to_owned(),
-        );
+        review.warnings.push(CliSettingsMessage::StreamUnknown.into());
     }
     Ok(review)
 }
@@ -214,7 +213,7 @@ fn cannot_be(refusals: Vec<Refusal>) -> Exit {
     refused(&refusals.into_iter().map(|refusal| refusal.sentence).collect::<Vec<_>>())
 }
 
-fn refused(problems: &[String]) -> Exit {
+fn refused(problems: &[impl Display]) -> Exit {
     say("Nothing was written:");
     problems.iter().for_each(say);
     Exit::NotTaken

@@ -6,7 +6,7 @@ mod act;
 pub use act::{Act, Done, counted};
 
 use brushwork_link::settings::{Journal, OpenedProfile, Refusal, plan};
-use brushwork_link::{Profile, SettingValue, SettingsImage, SettingsTable, WriteOptions};
+use brushwork_link::{Message, Profile, SettingValue, SettingsImage, SettingsTable, WriteOptions};
 
 /// How values are written of which some were read from a unit once (`is_taken`) and others typed. What was read may be out of range
 /// and is written as it was; what somebody types has to be right beside it.
@@ -40,9 +40,9 @@ pub fn merged(image: &SettingsImage, changes: &SettingsImage) -> SettingsImage {
 
 /// A profile as it is for a controller, and what had to be changed of it, a sentence each; as it was read where that is nothing.
 #[must_use]
-pub fn fitted(opened: OpenedProfile, table: &SettingsTable) -> (Profile, Vec<String>) {
+pub fn fitted(opened: OpenedProfile, table: &SettingsTable) -> (Profile, Vec<Message>) {
     let fitted = opened.profile.fitted_to(table);
-    let sentences: Vec<String> = opened.upgraded.into_iter().chain(fitted.changes).collect();
+    let sentences: Vec<Message> = opened.upgraded.into_iter().chain(fitted.changes).collect();
     (if sentences.is_empty() { opened.profile } else { fitted.profile }, sentences)
 }
 

@@ -6,7 +6,7 @@
 use brushwork_link::capability::CapabilityMap;
 use brushwork_link::device::{DisarmReason, StopReport};
 use brushwork_link::{
-    ArmScope, Channel, Event, Failure, Identity, LinkStatistics, Sample, StatusReport, Stream,
+    ArmScope, Channel, Event, Failure, Identity, LinkStatistics, Message, Sample, StatusReport, Stream,
 };
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -72,7 +72,7 @@ pub struct LinkView {
     /// Why arming was refused the last time.
     pub refusals: Vec<Failure>,
     /// What else can drive a motor while something is armed: input pins and scripts, each as a sentence.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Message>,
     /// The commands that each unit is known to lack, by its address.
     absent: BTreeMap<u8, Vec<u8>>,
 }
@@ -171,7 +171,7 @@ impl LinkView {
         let mut effects = vec![Effect::Say(Gravity::Note, said)];
         // A node's notes are its CANopen identity, which is nothing odd.
         let gravity = if identity.is_node() { Gravity::Note } else { Gravity::Warning };
-        let notes = identity.notes.iter().map(|note| Effect::Say(gravity, note.clone()));
+        let notes = identity.notes.iter().map(|note| Effect::Say(gravity, note.to_string()));
         effects.extend(notes);
         self.units.retain(|unit| unit.address != identity.address);
         self.units.push(identity);

@@ -1,6 +1,7 @@
 //! A status indicator: colour, shape and word, so that no one of the three has to be seen.
 
 use std::f32::consts::{PI, TAU};
+use std::fmt::Display;
 
 use egui::{
     Align2, Color32, FontId, Label, Pos2, Rect, Response, Role, Sense, Shape, Stroke, StrokeKind, TextStyle,
@@ -29,10 +30,10 @@ impl IndicatorState {
     }
 
     /// A line of text with it in front.
-    pub fn line_ui(self, ui: &mut Ui, text: &str) {
+    pub fn line_ui(self, ui: &mut Ui, text: &(impl Display + ?Sized)) {
         ui.horizontal(|ui| {
             self.ui(ui, vec2(18.0, 18.0), 6.0);
-            ui.add(Label::new(text).wrap());
+            ui.add(Label::new(text.to_string()).wrap());
         });
     }
 

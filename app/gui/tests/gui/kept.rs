@@ -119,7 +119,7 @@ fn what_a_unit_had_out_of_range_is_restored_with_a_warning_and_typed_it_is_refus
     // Chosen beside what is taken over, a value has to be right.
     want(&mut bench, &[(MIN, number(8.2))]);
     let refused = bench.model().front.settings.unit().unwrap().plan(None).unwrap_err();
-    assert!(refused[0].sentence.contains("8.2 V is below the MCP266's 10.0 V."), "{refused:?}");
+    assert!(refused[0].sentence.to_string().contains("8.2 V is below the MCP266's 10.0 V."), "{refused:?}");
     write(&mut bench);
     let controller = |bench: &mut Bench| bench.model().front.settings.unit().unwrap().on_controller(MIN);
     assert_eq!(controller(&mut bench), Some(number(12.0)));

@@ -22,6 +22,13 @@ use egui::Theme;
 
 const SMALLEST: [f32; 2] = [1024.0, 700.0];
 
+brushwork_values::messages! {
+    /// What else drives a motor in the pictures.
+    enum PictureMessage {
+        OtherDriver "Input pin 3 can also drive motor 1.",
+    }
+}
+
 fn picture(mut bench: Bench, name: &str) {
     bench.harness.set_render_cursor(false);
     bench.pass_ms(200);
@@ -116,7 +123,7 @@ fn the_pwm_screen_while_it_is_armed() {
         address: 0x80,
         scope: ArmScope::Pwm,
         controller_timeout: Some(Duration::from_secs(1)),
-        warnings: vec!["Input pin 3 can also drive motor 1.".to_owned()],
+        warnings: vec![PictureMessage::OtherDriver.into()],
     });
     model.front.pwm.set_duty(Motor::M1, 55.5);
     picture(bench, "pwm");

@@ -14,7 +14,7 @@ use super::stop::{StopBytes, UnitStop};
 use crate::exchange::{Exchange, ExchangeError, Permit, RETRIES, Reply, Watch};
 use crate::failure::Failure;
 use crate::transport::Stream;
-use brushwork_values::{Motor, Value};
+use brushwork_values::{Message, Motor, Value};
 use std::cell::Cell;
 use std::time::Duration;
 
@@ -48,7 +48,7 @@ pub struct ArmCheck {
     /// After how much silence the controller stops the motors by itself.
     pub controller_timeout: Option<Duration>,
     /// What does not speak against it but should be known, as sentences.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Message>,
 }
 
 /// One unit on a link.
@@ -77,7 +77,7 @@ pub trait Controller: Send {
     fn confirm_stop(&mut self, line: &mut Line<'_>, scripts: bool) -> Result<UnitStop, ExchangeError>;
 
     /// What can drive a motor without this program: input pins and scripts, each as a sentence.
-    fn other_drivers(&mut self, line: &mut Line<'_>) -> Result<Vec<String>, ExchangeError>;
+    fn other_drivers(&mut self, line: &mut Line<'_>) -> Result<Vec<Message>, ExchangeError>;
 
     /// Whether motion may be allowed over this port.
     fn check_arming(

@@ -10,7 +10,7 @@ use crate::capability::CapabilityMap;
 use crate::exchange::{LinkStatistics, Traffic};
 use crate::failure::Failure;
 use crate::transport::Stream;
-use brushwork_values::Values;
+use brushwork_values::{Message, Values};
 use std::fmt;
 use std::time::Duration;
 
@@ -49,7 +49,7 @@ pub enum Event {
         /// After how much silence the controller stops the motors by itself.
         controller_timeout: Option<Duration>,
         /// What else can drive a motor: input pins and scripts, each as a sentence.
-        warnings: Vec<String>,
+        warnings: Vec<Message>,
     },
     /// A motion command was confirmed by the controller.
     Driven {

@@ -7,6 +7,7 @@ use super::status::{StatusPlace, StatusReport};
 use crate::family::{FamilyRef, families};
 use crate::settings::Subject;
 use crate::unit::{FirmwareGeneration, UnitAddress};
+use brushwork_values::Message;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use std::any::Any;
@@ -61,7 +62,7 @@ pub trait UnitFacts: Any + fmt::Debug + Send + Sync {
     fn describe_sent(&self, bytes: &[u8]) -> Described;
 
     /// Why it does not take a drive as it is now, as a clause; `None` where it does, or where only asking tells.
-    fn objection(&self, _drive: &Drive) -> Option<String> {
+    fn objection(&self, _drive: &Drive) -> Option<Message> {
         None
     }
 
@@ -138,7 +139,7 @@ pub struct Identity {
     /// The port as a person would name it.
     pub port: String,
     /// What was odd: signs of different generations, commands that it does not answer.
-    pub notes: Vec<String>,
+    pub notes: Vec<Message>,
 }
 
 /// Its members by name. Each family of the program that has facts to tell has a member for them, null in the units of others, so that all units
@@ -205,7 +206,7 @@ impl Identity {
 
     /// Why it does not take a drive as it is now, as a clause; `None` where it does, or where only asking tells.
     #[must_use]
-    pub fn objection(&self, drive: &Drive) -> Option<String> {
+    pub fn objection(&self, drive: &Drive) -> Option<Message> {
         self.facts.0.objection(drive)
     }
 

@@ -1,6 +1,7 @@
 //! What became of a stop.
 
 use crate::failure::Failure;
+use brushwork_values::Message;
 use std::time::Duration;
 
 /// The bytes of a stop, to be written without waiting for anything.
@@ -82,7 +83,7 @@ pub struct UnitStop {
     /// Whether its motion buffers are empty by its own account; `None` if it does not tell.
     pub buffers_empty: Option<bool>,
     /// What can still drive a motor now: input pins and scripts, each as a sentence.
-    pub still_driven_by: Vec<String>,
+    pub still_driven_by: Vec<Message>,
     /// Whether its loop was left without output, since it did not hold the motor still: the motor is not held.
     pub loop_left_off: bool,
     /// What went wrong.

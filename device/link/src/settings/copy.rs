@@ -3,6 +3,8 @@
 use super::image::SettingsImage;
 use super::row::Row;
 use super::table::SettingsTable;
+use crate::messages::PlanMessage;
+use brushwork_values::Message;
 
 /// The settings of one motor as those of the other.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,7 +12,7 @@ pub struct CopiedMotor {
     /// The values that the other motor does not have yet.
     pub wanted: SettingsImage,
     /// What each motor keeps for itself, a sentence each.
-    pub left_out: Vec<String>,
+    pub left_out: Vec<Message>,
 }
 
 /// What each motor has of its own: which input is its encoder.
@@ -29,11 +31,11 @@ pub fn copy_motor(table: &SettingsTable, image: &SettingsImage, from: usize, sim
             continue;
         }
         if OWN.contains(&row.pattern) {
-            copied.left_out.push(format!("{} stays: each motor has an input of its own.", there.title()));
+            copied.left_out.push(PlanMessage::OwnInput { title: there.title() }.into());
         } else if let Some(reason) = there.locked(simulated) {
-            copied.left_out.push(format!("{} is not copied. {reason}", there.title()));
+            copied.left_out.push(PlanMessage::CannotBeCopied { title: there.title(), reason }.into());
         } else if let Err(why) = there.check(value) {
-            copied.left_out.push(format!("{} is not copied. {why}", there.title()));
+            copied.left_out.push(PlanMessage::NotCopied { title: there.title(), why }.into());
         } else {
             copied.wanted.set(&key, value);
         }

@@ -13,7 +13,7 @@ use crate::exchange::ExchangeError;
 use crate::failure::Failure;
 use crate::unit::{FirmwareGeneration, UnitAddress};
 use crate::wire::Wire;
-use brushwork_values::Values;
+use brushwork_values::{Message, Values};
 
 /// The settings of a family. What has a default here need not be thought of where it does not apply.
 pub trait FamilySettings: Send + Sync {
@@ -21,7 +21,7 @@ pub trait FamilySettings: Send + Sync {
     fn rows(&self, subject: &Subject) -> Vec<Row>;
 
     /// What a value means beyond its own words, such as the pin that a number stands for.
-    fn note(&self, _table: &SettingsTable, _row: &Row, _value: SettingValue) -> Option<String> {
+    fn note(&self, _table: &SettingsTable, _row: &Row, _value: SettingValue) -> Option<Message> {
         None
     }
 
@@ -42,7 +42,7 @@ pub trait FamilySettings: Send + Sync {
     }
 
     /// What the command that writes these rows takes, in wire order.
-    fn arguments(&self, planned: &Planned<'_>) -> Result<Vec<Argument>, String>;
+    fn arguments(&self, planned: &Planned<'_>) -> Result<Vec<Argument>, Message>;
 
     /// When it is sent.
     fn stage(&self, planned: &Planned<'_>) -> Stage;
@@ -51,7 +51,7 @@ pub trait FamilySettings: Send + Sync {
     fn order(&self, _steps: &mut [Step], _ram: &SettingsImage) {}
 
     /// What the user should know of the steps besides their values.
-    fn warnings(&self, context: &PlanContext<'_>, steps: &[Step]) -> Vec<String>;
+    fn warnings(&self, context: &PlanContext<'_>, steps: &[Step]) -> Vec<Message>;
 
     /// Pairs of settings of which the first must not be above the second.
     fn ordered_pairs(&self) -> &'static [(&'static str, &'static str)] {
@@ -64,7 +64,7 @@ pub trait FamilySettings: Send + Sync {
         _table: &SettingsTable,
         _after: &SettingsImage,
         _changes: &SettingsImage,
-    ) -> Vec<String> {
+    ) -> Vec<Message> {
         Vec::new()
     }
 
@@ -74,7 +74,7 @@ pub trait FamilySettings: Send + Sync {
         _table: &SettingsTable,
         _after: &SettingsImage,
         _changes: &SettingsImage,
-    ) -> Vec<String> {
+    ) -> Vec<Message> {
         Vec::new()
     }
 
@@ -84,7 +84,7 @@ pub trait FamilySettings: Send + Sync {
         step: &Step,
         address: UnitAddress,
         generation: FirmwareGeneration,
-    ) -> Result<Vec<u8>, String>;
+    ) -> Result<Vec<u8>, Message>;
 
     /// A step in words.
     fn step_words(&self, step: &Step, address: UnitAddress, generation: FirmwareGeneration) -> String;
@@ -130,7 +130,7 @@ pub trait FamilySettings: Send + Sync {
         _fit: &Fit<'_>,
         _there: &Row,
         _value: SettingValue,
-    ) -> Option<(SettingValue, String)> {
+    ) -> Option<(SettingValue, Message)> {
         None
     }
 }
@@ -199,6 +199,7 @@ impl Fit<'_> {
 }
 
 /// Why rows cannot be written.
-pub(super) fn refuse(changed: &[&Row], sentence: String) -> Refusal {
-    Refusal { key: changed.first().map_or_else(String::new, |row| row.key.clone()), sentence }
+pub(super) fn refuse(changed: &[&Row], sentence: impl Into<Message>) -> Refusal {
+    let key = changed.first().map_or_else(String::new, |row| row.key.clone());
+    Refusal { key, sentence: sentence.into() }
 }

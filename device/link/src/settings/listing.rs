@@ -6,6 +6,7 @@ use super::image::SettingsImage;
 use super::row::{Group, Row};
 use super::table::SettingsTable;
 use super::value::SettingValue;
+use brushwork_values::Message;
 
 /// One setting with its value.
 #[derive(Clone, Debug, Serialize)]
@@ -29,7 +30,7 @@ pub struct ListedSetting {
     /// Why it cannot be written on this controller; empty when it can.
     pub locked: &'static str,
     /// What the value means besides its text: the pin behind an encoder input number.
-    pub note: Option<String>,
+    pub note: Option<Message>,
 }
 
 /// Every row of the table with its value in `image`.

@@ -1,9 +1,10 @@
 //! The text form of a setting's value: what a person types and reads.
 
-use brushwork_values::Unit;
+use brushwork_values::{Message, Unit};
 
 use super::kind::{Coding, Kind, unit_forms};
 use super::value::SettingValue;
+use crate::messages::ValueMessage;
 
 /// Text, unit and step together: all that turning a value into text and back needs.
 #[derive(Clone, Copy, Debug)]
@@ -38,7 +39,7 @@ impl Notation {
     }
 
     /// The value that `text` stands for, rounded to the row's step; an error is a sentence.
-    pub(super) fn parse(self, text: &str) -> Result<SettingValue, String> {
+    pub(super) fn parse(self, text: &str) -> Result<SettingValue, Message> {
         let text = text.trim();
         match self.kind {
             Kind::Bool => parse_bool(text).map(SettingValue::Bool),
@@ -66,8 +67,10 @@ impl Notation {
         codes.iter().find(|code| code.key == key).map_or(key, |code| code.label)
     }
 
-    fn parse_choice(self, text: &str) -> Result<SettingValue, String> {
-        let Kind::Choice(codes) = self.kind else { return Err(format!("'{text}' is not a choice.")) };
+    fn parse_choice(self, text: &str) -> Result<SettingValue, Message> {
+        let Kind::Choice(codes) = self.kind else {
+            return Err(ValueMessage::NoChoice { text: text.to_owned() }.into());
+        };
         let wanted = text.to_lowercase();
         let named = codes.iter().find(|code| code.key == wanted || code.label.to_lowercase() == wanted);
         let numbered = || {
@@ -76,26 +79,34 @@ impl Notation {
         };
         named.or_else(numbered).map(|code| SettingValue::Choice(code.key)).ok_or_else(|| {
             let keys: Vec<&str> = codes.iter().map(|code| code.key).collect();
-            format!("'{text}' is none of {}.", keys.join(", "))
+            ValueMessage::NoneOf { text: text.to_owned(), keys: keys.join(", ") }.into()
         })
     }
 
-    fn parse_int(self, text: &str) -> Result<i64, String> {
+    fn parse_int(self, text: &str) -> Result<i64, Message> {
         if let Some(whole) = parse_whole(text) {
             return Ok(whole);
         }
         let number = self.parse_number(text)?;
         if number.fract() != 0.0 || number.abs() > 9e15 {
-            return Err(format!("'{text}' is not a whole number{}.", self.of_unit()));
+            let text = text.to_owned();
+            return Err(match self.unit.symbol() {
+                "" => ValueMessage::NoWholeNumber { text }.into(),
+                unit => ValueMessage::NoWholeNumberOf { text, unit }.into(),
+            });
         }
         Ok(number as i64)
     }
 
-    fn parse_number(self, text: &str) -> Result<f64, String> {
+    fn parse_number(self, text: &str) -> Result<f64, Message> {
         let (number, factor) = self.split_unit(text);
+        let text = || text.to_owned();
         match number.trim_end().parse::<f64>() {
             Ok(value) if value.is_finite() => Ok(value * factor),
-            _ => Err(format!("'{text}' is not a number{}.", self.of_unit())),
+            _ => Err(match self.unit.symbol() {
+                "" => ValueMessage::NoNumber { text: text() }.into(),
+                unit => ValueMessage::NoNumberOf { text: text(), unit }.into(),
+            }),
         }
     }
 
@@ -106,11 +117,6 @@ impl Notation {
         let cut = |(form, factor)| strip_suffix_ignoring_case(text, form).map(|number| (number, factor));
         forms.filter_map(cut).min_by_key(|(number, _)| number.len()).unwrap_or((text, 1.0))
     }
-
-    fn of_unit(self) -> String {
-        let symbol = self.unit.symbol();
-        if symbol.is_empty() { String::new() } else { format!(" of {symbol}") }
-    }
 }
 
 fn strip_suffix_ignoring_case<'t>(text: &'t str, suffix: &str) -> Option<&'t str> {
@@ -119,11 +125,11 @@ fn strip_suffix_ignoring_case<'t>(text: &'t str, suffix: &str) -> Option<&'t str
     (tail.to_lowercase() == suffix.to_lowercase()).then_some(head)
 }
 
-fn parse_bool(text: &str) -> Result<bool, String> {
+fn parse_bool(text: &str) -> Result<bool, Message> {
     match text.to_lowercase().as_str() {
         "yes" | "true" | "on" | "1" | "enabled" => Ok(true),
         "no" | "false" | "off" | "0" | "disabled" => Ok(false),
-        _ => Err(format!("'{text}' is neither yes nor no.")),
+        _ => Err(ValueMessage::NeitherYesNorNo { text: text.to_owned() }.into()),
     }
 }
 

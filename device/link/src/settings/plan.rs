@@ -13,7 +13,9 @@ use super::row::{Carrier, Place, Row, Sink, Source};
 use super::step::{Refusal, Step, WriteOptions};
 use super::table::SettingsTable;
 use super::value::SettingValue;
+use crate::messages::PlanMessage;
 use crate::unit::{FirmwareGeneration, UnitAddress};
+use brushwork_values::Message;
 
 /// The commands that bring about some changes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -23,12 +25,12 @@ pub struct Plan {
     /// The commands, in the order in which they are sent.
     pub steps: Vec<Step>,
     /// What the user should know before it is done, a sentence each.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Message>,
 }
 
 impl Step {
     /// The bytes as they would be sent.
-    pub fn bytes(&self, address: UnitAddress, generation: FirmwareGeneration) -> Result<Vec<u8>, String> {
+    pub fn bytes(&self, address: UnitAddress, generation: FirmwareGeneration) -> Result<Vec<u8>, Message> {
         self.family.settings().step_bytes(self, address, generation)
     }
 
@@ -38,7 +40,7 @@ impl Step {
     }
 
     /// Whether the controller's command has room for the values; an error is a clause.
-    fn fits(&self, generation: FirmwareGeneration) -> Result<(), String> {
+    fn fits(&self, generation: FirmwareGeneration) -> Result<(), Message> {
         self.bytes(UnitAddress::factory(self.family), generation).map(drop)
     }
 
@@ -73,7 +75,8 @@ pub fn plan(
     let mut warnings = context.unusual();
     match options.as_read {
         true => {
-            warnings.extend(pairs.into_iter().map(|pair| format!("{} {AS_READ_PAIR}", pair.sentence)));
+            let as_read = |pair: Refusal| PlanMessage::BothAsRead { why: pair.sentence }.into();
+            warnings.extend(pairs.into_iter().map(as_read));
         }
         false => refusals.extend(pairs),
     }
@@ -85,8 +88,6 @@ pub fn plan(
     warnings.extend(family.conflicts(table, &after, changes));
     Ok(Plan { hidden: context.hidden(), steps, warnings })
 }
-
-const AS_READ_PAIR: &str = "Both are written as they were read.";
 
 /// The rows whose values a change of `keys` needs: those themselves, and those that share a command with
 /// them.
@@ -110,13 +111,12 @@ fn whole_word_of(row: &Row) -> Option<&'static str> {
 
 fn refusal(table: &SettingsTable, key: &str, value: SettingValue, options: WriteOptions) -> Option<Refusal> {
     let sentence = match table.row(key) {
-        None => Some(format!(
-            "The {} with firmware {} has no setting {key}.",
-            table.subject().model.name,
-            table.subject().generation
-        )),
+        None => {
+            let (model, generation) = (table.subject().model.name, table.subject().generation);
+            Some(PlanMessage::NoSuchSetting { model, generation, key: key.to_owned() }.into())
+        }
         Some(row) => match row.locked(options.simulated) {
-            Some(reason) => Some(format!("{} is not written. {reason}", row.title())),
+            Some(reason) => Some(PlanMessage::Locked { title: row.title(), reason }.into()),
             None if options.as_read => row.check_as_read(value).err(),
             None => row.check(value).err(),
         },
@@ -149,7 +149,7 @@ impl PlanContext<'_> {
                     };
                     match step.fits(self.table.subject().generation) {
                         Ok(()) => steps.push(step),
-                        Err(why) => refusals.push(no_room(&changed, &why)),
+                        Err(why) => refusals.push(no_room(&changed, why)),
                     }
                 }
                 Err(refusal) => refusals.push(refusal),
@@ -197,7 +197,8 @@ impl PlanContext<'_> {
                 value.and_then(|value| row.encode(value)).ok_or_else(|| unknown_neighbour(row, changed))?;
             word = match row.sink().and_then(|sink| sink.place.bits) {
                 Some(bits) if bits.extract(bits.insert(0, raw)) != raw => {
-                    return Err(no_room(&[row], &format!("{raw} takes more than {} bits", bits.width)));
+                    let why = PlanMessage::TooManyBits { raw, width: bits.width };
+                    return Err(no_room(&[row], why.into()));
                 }
                 Some(bits) => bits.insert(word, raw),
                 None => raw,
@@ -218,27 +219,21 @@ impl PlanContext<'_> {
     }
 
     /// Values that nobody may choose and that are written as they were read.
-    fn unusual(&self) -> Vec<String> {
+    fn unusual(&self) -> Vec<Message> {
         let changed = self.table.rows().iter().filter_map(|row| Some((row, self.changes.get(&row.key)?)));
         changed.filter_map(|(row, value)| row.check_as_read(value).ok()?).collect()
     }
 }
 
 /// A value that the fields of its command cannot hold: no unit has ever had it.
-fn no_room(changed: &[&Row], why: &str) -> Refusal {
+fn no_room(changed: &[&Row], why: Message) -> Refusal {
     let titles: Vec<String> = changed.iter().map(|row| row.title()).collect();
-    refuse(changed, format!("{} cannot be written: {why}.", titles.join(", ")))
+    refuse(changed, PlanMessage::NoRoom { titles: titles.join(", "), why })
 }
 
 fn unknown_neighbour(row: &Row, changed: &[&Row]) -> Refusal {
     let wanted = changed.first().map_or_else(String::new, |row| row.title());
-    refuse(
-        changed,
-        format!(
-            "{wanted} cannot be written, since {} shares its command and its value is not known.",
-            row.title()
-        ),
-    )
+    refuse(changed, PlanMessage::UnknownNeighbour { wanted, neighbour: row.title() })
 }
 
 /// Pairs that `after` holds the wrong way round, if `changes` touches them.
@@ -249,13 +244,13 @@ fn wrong_pairs(table: &SettingsTable, after: &SettingsImage, changes: &SettingsI
         let (low, high) = (after.get(low)?, after.get(high)?);
         is_above(low, high).then(|| Refusal {
             key: (*touched).to_owned(),
-            sentence: format!(
-                "{} {} would be above {} {}.",
-                low_row.title(),
-                low_row.format(low),
-                high_row.title(),
-                high_row.format(high)
-            ),
+            sentence: PlanMessage::WrongOrder {
+                low: low_row.title(),
+                low_value: low_row.format(low),
+                high: high_row.title(),
+                high_value: high_row.format(high),
+            }
+            .into(),
         })
     };
     table.subject().family().settings().ordered_pairs().iter().filter_map(refusal).collect()

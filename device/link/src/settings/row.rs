@@ -3,14 +3,13 @@
 //! Rows are made by [`SettingsTable`](super::SettingsTable) from templates; this file is what everybody else
 //! reads.
 
-use std::fmt;
-
-use brushwork_values::Unit;
+use brushwork_values::{Message, Unit};
 use serde::{Serialize, Serializer};
 
 use super::kind::{Coding, Kind};
 use super::notation::Notation;
 use super::value::SettingValue;
+use crate::messages::ValueMessage;
 
 /// One setting of one controller.
 #[derive(Clone, Debug)]
@@ -283,56 +282,54 @@ impl Row {
 
     /// The value that `text` stands for, rounded to the row's step. Refuses, in a sentence, what is no such
     /// value or out of range.
-    pub fn parse(&self, text: &str) -> Result<SettingValue, String> {
-        let value = self.parse_any(text).map_err(|why| format!("{}: {why}", self.title()))?;
+    pub fn parse(&self, text: &str) -> Result<SettingValue, Message> {
+        let value = self.parse_any(text).map_err(|why| ValueMessage::OfRow { title: self.title(), why })?;
         self.check(value)?;
         Ok(value)
     }
 
     /// As [`Row::parse`], in range or not, for what a controller may hold.
-    pub fn parse_any(&self, text: &str) -> Result<SettingValue, String> {
+    pub fn parse_any(&self, text: &str) -> Result<SettingValue, Message> {
         self.notation().parse(text)
     }
 
     /// Refuses, in a sentence, a value of another kind or outside the row's range.
-    pub fn check(&self, value: SettingValue) -> Result<(), String> {
+    pub fn check(&self, value: SettingValue) -> Result<(), Message> {
+        let title = self.title();
         if let SettingValue::UnknownCode(raw) = value {
-            return Err(format!(
-                "{}: {raw} is none of the values known for it, so it is not written.",
-                self.title()
-            ));
+            return Err(ValueMessage::UnknownCode { title, raw }.into());
         }
         if self.coding.encode(self.kind, value).is_none() {
-            return Err(format!("{}: {} is not a {}.", self.title(), self.format(value), self.kind.name()));
+            let (value, kind) = (self.format(value), self.kind.name());
+            return Err(ValueMessage::OtherKind { title, value, kind }.into());
         }
-        match self.crossed_bound(value) {
-            None => Ok(()),
-            Some((side, bound)) => Err(format!(
-                "{} {} is {side} {}.",
-                self.title(),
-                self.format(value),
-                self.bound_text(side, bound)
-            )),
+        let Some((side, bound)) = self.crossed_bound(value) else { return Ok(()) };
+        let (value, bound, model) = (self.format(value), self.format(self.numeric(bound)), self.model);
+        Err(match (self.range.bound, side) {
+            (Bound::Model, Side::Above) => ValueMessage::AboveModel { title, value, model, bound },
+            (Bound::Model, Side::Below) => ValueMessage::BelowModel { title, value, model, bound },
+            (_, Side::Above) => ValueMessage::AboveHighest { title, value, bound },
+            (_, Side::Below) => ValueMessage::BelowLowest { title, value, bound },
         }
+        .into())
     }
 
     /// What to know before a value that a unit held once is written as it was: that it is out of range, or a number without a
     /// name. Refuses, in a sentence, what no unit can hold in this row.
-    pub fn check_as_read(&self, value: SettingValue) -> Result<Option<String>, String> {
+    pub fn check_as_read(&self, value: SettingValue) -> Result<Option<Message>, Message> {
         let Err(why) = self.check(value) else { return Ok(None) };
         match (self.encode(value), value) {
             (None, _) => Err(why),
-            (Some(_), SettingValue::UnknownCode(raw)) => Ok(Some(format!(
-                "{}: {raw} is none of the values known for it. It is written as it was read.",
-                self.title()
-            ))),
-            (Some(_), _) => Ok(Some(format!("{why} It is written as it was read."))),
+            (Some(_), SettingValue::UnknownCode(raw)) => {
+                Ok(Some(ValueMessage::UnknownCodeAsRead { title: self.title(), raw }.into()))
+            }
+            (Some(_), _) => Ok(Some(ValueMessage::AsRead { why }.into())),
         }
     }
 
     /// The value rounded to the row's step and moved into its range, with a sentence for each thing that had
     /// to change. A value of another kind becomes the default.
-    pub fn repair(&self, value: SettingValue) -> (SettingValue, Option<String>) {
+    pub fn repair(&self, value: SettingValue) -> (SettingValue, Option<Message>) {
         match self.check(value) {
             Ok(()) => (self.settle(value), None),
             Err(why) => {
@@ -340,7 +337,7 @@ impl Row {
                     Some((_, bound)) => self.numeric(bound),
                     None => self.default,
                 };
-                (repaired, Some(format!("{why} {} is used instead.", self.format(repaired))))
+                (repaired, Some(ValueMessage::Repaired { why, value: self.format(repaired) }.into()))
             }
         }
     }
@@ -394,15 +391,6 @@ impl Row {
         }
     }
 
-    fn bound_text(&self, side: Side, bound: f64) -> String {
-        let bound = self.format(self.numeric(bound));
-        match (self.range.bound, side) {
-            (Bound::Model, _) => format!("the {}'s {bound}", self.model),
-            (_, Side::Above) => format!("the highest value, {bound}"),
-            (_, Side::Below) => format!("the lowest value, {bound}"),
-        }
-    }
-
     fn numeric(&self, number: f64) -> SettingValue {
         match self.kind {
             Kind::Int => SettingValue::Int(number as i64),
@@ -415,15 +403,6 @@ impl Row {
 enum Side {
     Above,
     Below,
-}
-
-impl fmt::Display for Side {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Above => "above",
-            Self::Below => "below",
-        })
-    }
 }
 
 /// "Velocity P" within a sentence; "QPPS" and "L" keep their capitals.

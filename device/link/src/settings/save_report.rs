@@ -6,6 +6,8 @@ use super::difference::Difference;
 use super::image::SettingsImage;
 use super::write_report::WriteReport;
 use crate::failure::Failure;
+use crate::messages::{SaveMessage, settings};
+use brushwork_values::Message;
 
 /// What is known of a save.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -40,46 +42,29 @@ pub struct SaveReport {
 
 impl SaveReport {
     /// What became of the save, in a sentence or two.
-    pub fn sentence(&self) -> String {
-        let count = self.differences.len();
+    pub fn sentence(&self) -> Message {
+        let settings = settings(self.differences.len());
         match (self.verdict, &self.failure) {
-            (SaveVerdict::Verified, _) => {
-                "The settings are saved; they were read back from EEPROM.".to_owned()
-            }
-            (SaveVerdict::Acknowledged, _) => "The controller acknowledged the save. It did not answer \
-                                               when asked to load its EEPROM, so the save is not proven; \
-                                               that happens after good saves too."
-                .to_owned(),
-            (SaveVerdict::Stored, _) => "The settings are saved: each register was acknowledged as stored and read back. EEPROM itself is \
-                                         read at a new start alone: load the settings from EEPROM to prove it."
-                .to_owned(),
+            (SaveVerdict::Verified, _) => SaveMessage::Verified,
+            (SaveVerdict::Acknowledged, _) => SaveMessage::Acknowledged,
+            (SaveVerdict::Stored, _) => SaveMessage::Stored,
+            (SaveVerdict::NotSaved, _) if self.eeprom.is_none() => SaveMessage::ReadOtherwise { settings },
             (SaveVerdict::NotSaved, _) => {
-                let settings = if count == 1 { "1 setting".to_owned() } else { format!("{count} settings") };
-                if self.eeprom.is_none() {
-                    return format!("The save did not take: {settings} read otherwise afterwards. Save again.");
-                }
-                format!(
-                    "The save did not take: {settings} came back from EEPROM otherwise. {}",
-                    self.put_back_sentence()
-                )
+                SaveMessage::CameBackOtherwise { settings, now: self.put_back_sentence() }
             }
-            (SaveVerdict::Unknown, Some(failure)) => {
-                format!("It is not known whether the settings are saved. {failure} Save again to be sure.")
-            }
-            (SaveVerdict::Unknown, None) => {
-                "It is not known whether the settings are saved. Save again to be sure.".to_owned()
-            }
+            (SaveVerdict::Unknown, Some(failure)) => SaveMessage::UnknownFor { failure: failure.message() },
+            (SaveVerdict::Unknown, None) => SaveMessage::Unknown,
         }
+        .into()
     }
 
-    fn put_back_sentence(&self) -> &'static str {
+    fn put_back_sentence(&self) -> Message {
         match &self.put_back {
-            Some(report) if report.is_complete() => {
-                "The controller works on with the settings that were to be saved."
-            }
-            Some(_) => "Not all of them could be written to the controller again.",
-            None => "The controller works on with what EEPROM held.",
+            Some(report) if report.is_complete() => SaveMessage::PutBack,
+            Some(_) => SaveMessage::NotPutBack,
+            None => SaveMessage::AsInEeprom,
         }
+        .into()
     }
 }
 

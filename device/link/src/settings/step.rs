@@ -2,6 +2,7 @@
 
 use crate::family::FamilyRef;
 use crate::transport::Stream;
+use brushwork_values::Message;
 use serde::Serialize;
 
 /// What writing has to know besides the values.
@@ -64,5 +65,5 @@ pub struct Refusal {
     /// The row.
     pub key: String,
     /// The reason as a sentence.
-    pub sentence: String,
+    pub sentence: Message,
 }

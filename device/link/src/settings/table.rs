@@ -6,6 +6,7 @@ use super::image::SettingsImage;
 use super::row::{Group, Row};
 use super::subject::Subject;
 use super::value::SettingValue;
+use brushwork_values::Message;
 
 /// The settings of one controller.
 #[derive(Clone, Debug)]
@@ -44,7 +45,7 @@ impl SettingsTable {
     }
 
     /// What a value means besides its text: the pin behind an encoder input number, as far as we assume it.
-    pub fn note(&self, row: &Row, value: SettingValue) -> Option<String> {
+    pub fn note(&self, row: &Row, value: SettingValue) -> Option<Message> {
         self.subject.family().settings().note(self, row, value)
     }
 

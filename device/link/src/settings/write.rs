@@ -16,8 +16,10 @@ use super::value::SettingValue;
 use super::write_report::{RowOutcome, RowState, WriteReport};
 use crate::exchange::ExchangeError;
 use crate::failure::Failure;
+use crate::messages::WriteMessage;
 use crate::unit::UnitAddress;
 use crate::wire::Wire;
+use brushwork_values::Message;
 
 /// Why nothing was written.
 #[derive(Clone, Debug, Error)]
@@ -84,7 +86,7 @@ pub fn write(
 fn with_causes(mut refusals: Vec<Refusal>, failures: &[ReadFailure]) -> Vec<Refusal> {
     refusals.extend(failures.iter().map(|unread| Refusal {
         key: unread.keys.first().cloned().unwrap_or_default(),
-        sentence: unread.failure.to_string(),
+        sentence: unread.failure.message(),
     }));
     refusals
 }
@@ -110,7 +112,7 @@ struct Writer<'w> {
     changes: SettingsImage,
     involved: Vec<&'w Row>,
     /// Rows whose command was answered by something other than an acknowledgement, with the sentence.
-    faults: Vec<(String, String)>,
+    faults: Vec<(String, Message)>,
     /// Rows whose command was sent.
     sent: Vec<String>,
     /// Why no further command is sent.
@@ -123,7 +125,7 @@ struct Writer<'w> {
 struct ReadBack {
     image: SettingsImage,
     /// Why rows are missing from the image.
-    why: Option<String>,
+    why: Option<Message>,
 }
 
 impl Writer<'_> {
@@ -145,12 +147,14 @@ impl Writer<'_> {
         }
         let address = self.wire.address();
         let done = match self.wire.hidden_settings() {
-            Some(hidden) => hidden.set(address, key, raw),
-            None => Err("This controller does not let its hidden settings be set.".to_owned()),
+            Some(hidden) => {
+                hidden.set(address, key, raw).map_err(|sentence| WriteMessage::HiddenRefused { sentence })
+            }
+            None => Err(WriteMessage::NoHiddenSettings),
         };
         self.sent.push(key.to_owned());
         if let Err(why) = done {
-            self.faults.push((key.to_owned(), why));
+            self.faults.push((key.to_owned(), why.into()));
         }
     }
 
@@ -171,7 +175,7 @@ impl Writer<'_> {
     /// A command that failed: its rows are told; the rest goes on only if the controller still answers.
     fn note_fault(&mut self, step: &Step, error: &ExchangeError) {
         let failure = error.failure(format!("write {}", step.title()), self.wire.describe());
-        self.faults.extend(step.keys.iter().map(|key| (key.clone(), failure.to_string())));
+        self.faults.extend(step.keys.iter().map(|key| (key.clone(), failure.message())));
         if is_final(error) || (step.stage < Stage::Address && !self.still_answers()) {
             self.ended = Some(failure);
         }
@@ -200,12 +204,12 @@ impl Writer<'_> {
     }
 
     /// Rows that nobody wanted changed and that came back changed.
-    fn disturbed_neighbours(&self, found: &SettingsImage) -> Vec<String> {
+    fn disturbed_neighbours(&self, found: &SettingsImage) -> Vec<Message> {
         let disturbed = |row: &&Row| {
             let (before, now) = (self.before.get(&row.key)?, found.get(&row.key)?);
             (self.wanted.get(&row.key).is_none() && now != before).then(|| {
                 let (before, now) = (row.format(before), row.format(now));
-                format!("{} changed from {before} to {now}, which was not asked for.", row.title())
+                WriteMessage::Disturbed { title: row.title(), before, now }.into()
             })
         };
         self.involved.iter().filter_map(disturbed).collect()
@@ -216,17 +220,17 @@ impl Writer<'_> {
         if let Some(failure) = &self.ended
             && self.sent.is_empty()
         {
-            return ReadBack { image: SettingsImage::default(), why: Some(failure.to_string()) };
+            return ReadBack { image: SettingsImage::default(), why: Some(failure.message()) };
         }
         match read_rows(self.wire, &self.involved) {
             Ok(reading) => {
                 self.transactions += reading.transactions;
-                let why = reading.failures.first().map(|failure| failure.failure.to_string());
+                let why = reading.failures.first().map(|failure| failure.failure.message());
                 ReadBack { image: reading.image, why }
             }
             Err(error) => {
                 let failure = error.failure("read the settings back", self.wire.describe());
-                let why = Some(failure.to_string());
+                let why = Some(failure.message());
                 self.ended.get_or_insert(failure);
                 ReadBack { image: SettingsImage::default(), why }
             }
@@ -235,7 +239,7 @@ impl Writer<'_> {
 
     /// A step that changes the way to the controller: sent, followed if the wire can follow, and read back
     /// where it leads.
-    fn send_departing(&mut self, step: &Step, found: &mut ReadBack, warnings: &mut Vec<String>) {
+    fn send_departing(&mut self, step: &Step, found: &mut ReadBack, warnings: &mut Vec<Message>) {
         if self.ended.is_some() {
             return;
         }
@@ -244,7 +248,7 @@ impl Writer<'_> {
             found.image.remove(key);
         }
         if step.stage == Stage::Address && self.sent_any(step) && !self.follow(step, warnings) {
-            found.why = Some("The controller answers neither to its old nor to its new address.".to_owned());
+            found.why = Some(WriteMessage::AnswersNowhere.into());
             return;
         }
         let rows: Vec<&Row> = step.keys.iter().filter_map(|key| self.table.row(key)).collect();
@@ -252,12 +256,12 @@ impl Writer<'_> {
             Ok(reading) => {
                 self.transactions += reading.transactions;
                 found.image.merge(&reading.image);
-                let why = reading.failures.first().map(|failure| failure.failure.to_string());
+                let why = reading.failures.first().map(|failure| failure.failure.message());
                 found.why = found.why.take().or(why);
             }
             Err(error) => {
                 let failure = error.failure("read the settings back", self.wire.describe());
-                found.why.get_or_insert(failure.to_string());
+                found.why.get_or_insert(failure.message());
                 self.ended.get_or_insert(failure);
             }
         }
@@ -265,12 +269,12 @@ impl Writer<'_> {
 
     /// Speaks to the unit's new address, or to the old one if it does not answer there. `false` if it answers
     /// to neither.
-    fn follow(&mut self, step: &Step, warnings: &mut Vec<String>) -> bool {
+    fn follow(&mut self, step: &Step, warnings: &mut Vec<Message>) -> bool {
         let old = self.wire.address();
         let number = step.family.settings().new_address(step);
         let Some(new) = number.and_then(|number| UnitAddress::new(step.family, number)) else { return true };
         if !self.wire.set_address(new) {
-            warnings.push(format!("The controller is at {new} now; connect to it there."));
+            warnings.push(WriteMessage::Moved { address: new }.into());
             return false;
         }
         self.still_answers() || (self.wire.set_address(old) && self.still_answers())
@@ -297,15 +301,15 @@ impl Writer<'_> {
         Some(RowOutcome { key: row.key.clone(), before, wanted, found, state })
     }
 
-    fn fault_of(&self, key: &str) -> String {
-        self.faults.iter().find(|(faulty, _)| faulty == key).map_or_else(String::new, |(_, why)| why.clone())
+    fn fault_of(&self, key: &str) -> Message {
+        self.faults.iter().find(|(faulty, _)| faulty == key).map(|(_, why)| why.clone()).unwrap_or_default()
     }
 
-    fn why_not_sent(&self, key: &str) -> String {
+    fn why_not_sent(&self, key: &str) -> Message {
         match (self.fault_of(key), &self.ended) {
             (fault, _) if !fault.is_empty() => fault,
-            (_, Some(failure)) => failure.to_string(),
-            _ => String::new(),
+            (_, Some(failure)) => failure.message(),
+            _ => Message::default(),
         }
     }
 }

@@ -7,7 +7,9 @@ use super::row::Row;
 use super::table::SettingsTable;
 use super::value::SettingValue;
 use crate::failure::Failure;
+use crate::messages::WriteMessage;
 use crate::unit::UnitAddress;
+use brushwork_values::Message;
 
 /// What became of each change.
 #[derive(Clone, Debug, Serialize)]
@@ -15,7 +17,7 @@ pub struct WriteReport {
     /// Every row that was to be changed, in screen order.
     pub rows: Vec<RowOutcome>,
     /// What the user should know, a sentence each.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Message>,
     /// Why writing ended early, if it did.
     pub ended_early: Option<Failure>,
     /// Where the controller answers now.
@@ -48,17 +50,17 @@ pub enum RowState {
     /// Read back, and not as wanted; with what was wrong with the command, if anything was.
     DidNotTake {
         /// What came back when it was written; empty when it was acknowledged.
-        why: String,
+        why: Message,
     },
     /// Not sent; the controller holds the old value.
     NotSent {
         /// Why, as a sentence.
-        why: String,
+        why: Message,
     },
     /// Sent, and not read back.
     Unverified {
         /// Why, as a sentence.
-        why: String,
+        why: Message,
     },
 }
 
@@ -74,7 +76,7 @@ impl WriteReport {
     }
 
     /// A sentence for each row that is not known to hold what was wanted.
-    pub fn sentences(&self, table: &SettingsTable) -> Vec<String> {
+    pub fn sentences(&self, table: &SettingsTable) -> Vec<Message> {
         self.did_not_take().filter_map(|outcome| Some(outcome.sentence(table.row(&outcome.key)?))).collect()
     }
 
@@ -91,20 +93,16 @@ impl WriteReport {
 }
 
 impl RowOutcome {
-    fn sentence(&self, row: &Row) -> String {
+    fn sentence(&self, row: &Row) -> Message {
         let (title, wanted) = (row.title(), row.format(self.wanted));
         let found = self.found.map_or_else(|| "unknown".to_owned(), |found| row.format(found));
-        match &self.state {
-            RowState::Taken => format!("{title} is {wanted}."),
-            RowState::DidNotTake { why } if why.is_empty() => {
-                format!(
-                    "{title} was to be {wanted} and is {found}: the controller acknowledged it and did not \
-                     take it."
-                )
-            }
-            RowState::DidNotTake { why } => format!("{title} was to be {wanted} and is {found}. {why}"),
-            RowState::NotSent { why } => format!("{title} was to be {wanted} and was not sent. {why}"),
-            RowState::Unverified { why } => format!("{title} was set to {wanted} and not read back. {why}"),
+        match self.state.clone() {
+            RowState::Taken => WriteMessage::Taken { title, wanted },
+            RowState::DidNotTake { why } if why.is_empty() => WriteMessage::NotTaken { title, wanted, found },
+            RowState::DidNotTake { why } => WriteMessage::NotTakenFor { title, wanted, found, why },
+            RowState::NotSent { why } => WriteMessage::NotSent { title, wanted, why },
+            RowState::Unverified { why } => WriteMessage::Unverified { title, wanted, why },
         }
+        .into()
     }
 }

@@ -12,6 +12,7 @@ mod driver;
 mod facts;
 mod family;
 pub mod firmware;
+pub mod messages;
 pub mod packet;
 mod readings;
 pub mod script;

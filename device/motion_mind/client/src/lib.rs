@@ -8,6 +8,7 @@
 mod controller;
 mod driver;
 mod family;
+pub mod messages;
 mod settings;
 
 pub use controller::{

@@ -1,6 +1,7 @@
 //! The smallest family there can be: text lines, one motor that takes speeds and no duty, one setting, one channel, one indicator. The
 //! window's tests show it too.
 
+use brushwork_link::Message;
 use brushwork_link::device::controller::{
     ArmCheck, Controller, Described, DiscoverError, Line, PollItem, PollList, Search,
 };
@@ -237,6 +238,13 @@ impl Search for EchoSearch {
     }
 }
 
+brushwork_values::messages! {
+    /// What the family says.
+    pub enum EchoMessage {
+        SpeedsAlone "it takes speeds alone",
+    }
+}
+
 #[derive(Debug)]
 pub struct EchoFacts;
 
@@ -277,8 +285,8 @@ impl UnitFacts for EchoFacts {
         Described { text: String::from_utf8_lossy(bytes).into_owned(), sound: true }
     }
 
-    fn objection(&self, drive: &Drive) -> Option<String> {
-        matches!(drive.m1, Some(DriveCommand::Duty { .. })).then(|| "it takes speeds alone".to_owned())
+    fn objection(&self, drive: &Drive) -> Option<Message> {
+        matches!(drive.m1, Some(DriveCommand::Duty { .. })).then(|| EchoMessage::SpeedsAlone.into())
     }
 
     fn preview(&self, _drive: &Drive, _address: u8) -> Vec<Vec<u8>> {
@@ -343,7 +351,7 @@ impl Controller for EchoUnit {
         })
     }
 
-    fn other_drivers(&mut self, _line: &mut Line<'_>) -> Result<Vec<String>, ExchangeError> {
+    fn other_drivers(&mut self, _line: &mut Line<'_>) -> Result<Vec<Message>, ExchangeError> {
         Ok(Vec::new())
     }
 
@@ -449,7 +457,7 @@ impl FamilySettings for EchoSettings {
         "read the gain"
     }
 
-    fn arguments(&self, _planned: &Planned<'_>) -> Result<Vec<Argument>, String> {
+    fn arguments(&self, _planned: &Planned<'_>) -> Result<Vec<Argument>, Message> {
         Ok(vec![Argument::Field(GAIN)])
     }
 
@@ -457,11 +465,11 @@ impl FamilySettings for EchoSettings {
         Stage::Motors
     }
 
-    fn warnings(&self, _context: &PlanContext<'_>, _steps: &[Step]) -> Vec<String> {
+    fn warnings(&self, _context: &PlanContext<'_>, _steps: &[Step]) -> Vec<Message> {
         Vec::new()
     }
 
-    fn step_bytes(&self, step: &Step, _: UnitAddress, _: FirmwareGeneration) -> Result<Vec<u8>, String> {
+    fn step_bytes(&self, step: &Step, _: UnitAddress, _: FirmwareGeneration) -> Result<Vec<u8>, Message> {
         Ok(format!("G {}\n", step.values()[0]).into_bytes())
     }
 

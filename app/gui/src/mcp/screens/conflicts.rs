@@ -30,7 +30,7 @@ pub fn conflicts_ui(ui: &mut Ui, general: &mut GeneralView<'_>, height: f32) {
                     let text_width = (ui.available_width() - 90.0).max(120.0);
                     ui.allocate_ui(vec2(text_width, 0.0), |ui| {
                         ui.set_width(text_width);
-                        ui.add(Label::new(&conflict.sentence).wrap());
+                        ui.add(Label::new(conflict.sentence.to_string()).wrap());
                     });
                     let response = ui.add(Button::new("Go to"));
                     let spoken = format!("Go to {}", title.unwrap_or_default());

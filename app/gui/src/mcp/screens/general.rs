@@ -1,7 +1,8 @@
 //! What General Settings has of an MCP's own (MCP manual 1.2.10 and 1.9): pins with their graphs, conflicts, the voltage clamp test.
 
 use brushwork_link::settings::{Group, SettingValue};
-use brushwork_mcp_client::settings::{BRIDGE_WARNING, SHORTEST_AUTORUN_MS};
+use brushwork_mcp_client::messages::McpSettingsMessage;
+use brushwork_mcp_client::settings::SHORTEST_AUTORUN_MS;
 use egui::{Ui, vec2};
 
 use super::{clamp, conflicts, pin};
@@ -66,6 +67,6 @@ fn bridge_ui(ui: &mut Ui, unit: Option<&UnitSettings>) {
     let is_on = |unit: &UnitSettings| unit.wanted("unit.bridge_channels") == Some(SettingValue::Bool(true));
     if unit.is_some_and(is_on) {
         ui.add_space(6.0);
-        indicator_ui(ui, IndicatorState::Warning, BRIDGE_WARNING);
+        indicator_ui(ui, IndicatorState::Warning, &McpSettingsMessage::Bridged);
     }
 }

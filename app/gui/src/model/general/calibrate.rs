@@ -1,6 +1,7 @@
 //! Calibrating an input on the controller: its range there is opened wide, so that its bare readings can be seen, and put
 //! back on every way out. While it is open the input commands nothing.
 
+use brushwork_link::Message;
 use brushwork_link::settings::{Keeper, SettingsImage};
 
 use super::calibration::{Calibrated, Calibration};
@@ -88,7 +89,7 @@ fn closed(unit: &mut UnitSettings, run: &Run, name: &str) -> String {
     )
 }
 
-fn left_open(unit: &mut UnitSettings, run: &Run, name: &str, sentences: Vec<String>) -> Summary {
+fn left_open(unit: &mut UnitSettings, run: &Run, name: &str, sentences: Vec<Message>) -> Summary {
     want_back(unit, run);
     Summary {
         gravity: Gravity::Error,

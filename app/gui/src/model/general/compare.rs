@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use brushwork_link::Message;
 use brushwork_link::settings::{Difference, Group, SettingsImage};
 
 mod acts;
@@ -34,7 +35,7 @@ pub struct Comparing {
 #[derive(Clone, Debug)]
 struct Fitted {
     image: SettingsImage,
-    changes: Vec<String>,
+    changes: Vec<Message>,
 }
 
 impl Default for Comparing {
@@ -49,7 +50,7 @@ pub struct Comparison {
     /// What differs, in screen order: left, then right.
     pub groups: Vec<(Group, Vec<Difference>)>,
     /// What had to be changed of a side to compare it here.
-    pub notes: Vec<String>,
+    pub notes: Vec<Message>,
     /// Why nothing can be compared.
     pub missing: Vec<String>,
 }

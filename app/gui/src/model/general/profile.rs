@@ -3,7 +3,8 @@
 //! Opening a profile changes nothing but this screen; taking its values over makes them edits, to be written like any
 //! other.
 
-use brushwork_link::settings::{Profile, ProfileFileError};
+use brushwork_link::Message;
+use brushwork_link::settings::{Problem, Profile, ProfileFileError};
 
 use crate::files::{FileAction, FileAnswer, FileDialog, FileKind};
 
@@ -19,7 +20,7 @@ pub struct Profiles {
     dialog: Option<(FileDialog, Purpose)>,
     pub opened: Option<Opened>,
     /// A profile that has to be changed before it fits, until that is agreed to.
-    pending: Option<(Opened, Vec<String>)>,
+    pending: Option<(Opened, Vec<Message>)>,
     /// What came of the last attempt.
     pub reported: Reported,
 }
@@ -50,12 +51,12 @@ pub struct Opened {
     pub name: String,
     pub profile: Profile,
     /// What was corrected or left out in reading it.
-    pub corrected: Vec<String>,
+    pub corrected: Vec<Problem>,
 }
 
 impl Profiles {
     /// What would be changed of the profile that was read, a sentence each, and its name.
-    pub fn pending(&self) -> Option<(&str, &[String])> {
+    pub fn pending(&self) -> Option<(&str, &[Message])> {
         self.pending.as_ref().map(|(opened, changes)| (opened.name.as_str(), changes.as_slice()))
     }
 

@@ -1,5 +1,7 @@
 //! The sheets of the General Settings screen.
 
+use brushwork_link::Message;
+
 /// What stands in place of the list until it is answered.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Sheet {
@@ -20,6 +22,6 @@ pub enum Sheet {
     /// What did not go as wanted, a sentence each.
     Report {
         title: String,
-        sentences: Vec<String>,
+        sentences: Vec<Message>,
     },
 }

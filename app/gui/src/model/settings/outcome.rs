@@ -1,9 +1,10 @@
 //! What work with settings gave, taken over into a unit's settings and told in sentences.
 
+use brushwork_link::messages::SaveMessage;
 use brushwork_link::settings::{
     DefaultsReport, Known, ReadFailure, RowState, SaveReport, SaveVerdict, WriteError, WriteReport,
 };
-use brushwork_link::{JobEnding, ReadReport, SettingsImage, SettingsTable};
+use brushwork_link::{Failure, JobEnding, Message, ReadReport, SettingsImage, SettingsTable};
 
 use super::summary::Summary;
 use super::unit::UnitSettings;
@@ -49,7 +50,7 @@ pub(super) fn applied(
     };
     unit.note_written(&report, replaced, known);
     let mut said: Vec<(Gravity, String)> =
-        report.warnings.iter().map(|text| (Gravity::Warning, text.clone())).collect();
+        report.warnings.iter().map(|text| (Gravity::Warning, text.to_string())).collect();
     let wrong = report.sentences(unit.table());
     let taken = report.rows.iter().filter(|row| row.state == RowState::Taken).count();
     said.push(match wrong.is_empty() {
@@ -61,7 +62,7 @@ pub(super) fn applied(
                 counted(taken)
             ),
         ),
-        false => (Gravity::Error, wrong.join(" ")),
+        false => (Gravity::Error, wrong.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ")),
     });
     said
 }
@@ -115,7 +116,7 @@ fn written(unit: &mut UnitSettings, report: &WriteReport, replaced: &SettingsIma
     let wanted = report.rows.len();
     let failed = report.did_not_take().count();
     let mut sentences = report.sentences(unit.table());
-    sentences.extend(report.ended_early.iter().map(ToString::to_string));
+    sentences.extend(report.ended_early.iter().map(Failure::message));
     unit.note_written(report, replaced, known);
     let (gravity, summary) = if failed == 0 {
         let text = format!(
@@ -152,15 +153,15 @@ fn saved(unit: &mut UnitSettings, report: &SaveReport) -> Summary {
     };
     let sentences = differences(unit.table(), report);
     unit.note_saved(report);
-    Summary { gravity, summary: report.sentence(), sentences, address: None }
+    Summary { gravity, summary: report.sentence().to_string(), sentences, address: None }
 }
 
-fn differences(table: &SettingsTable, report: &SaveReport) -> Vec<String> {
+fn differences(table: &SettingsTable, report: &SaveReport) -> Vec<Message> {
     let wanted = report.differences.iter();
-    let mut sentences: Vec<String> = wanted
+    let mut sentences: Vec<Message> = wanted
         .filter_map(|difference| {
             let row = table.row(&difference.key)?;
-            Some(format!("{} (wanted, then what EEPROM holds).", difference.describe(row)))
+            Some(SaveMessage::Differs { difference: difference.describe(row) }.into())
         })
         .collect();
     sentences.extend(report.put_back.iter().flat_map(|put_back| put_back.sentences(table)));

@@ -1,6 +1,7 @@
 //! What became of some work on settings.
 
 use crate::model::message::Gravity;
+use brushwork_link::Message;
 
 /// What became of some work, for the user.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -8,7 +9,7 @@ pub struct Summary {
     pub gravity: Gravity,
     pub summary: String,
     /// More than fits the message line.
-    pub sentences: Vec<String>,
+    pub sentences: Vec<Message>,
     /// Where the unit answers now, if the work can have changed that.
     pub address: Option<u8>,
 }

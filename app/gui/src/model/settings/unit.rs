@@ -6,13 +6,13 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use brushwork_core::keep;
 use brushwork_core::settings::write_options;
-use brushwork_link::UnitAddress;
 use brushwork_link::device::Identity;
 use brushwork_link::settings::{
     Copies, Difference, Group, Kind, Known, Plan, Profile, ReadReport, Refusal, Row, RowState, SaveReport,
     SaveVerdict, SettingValue, SettingsImage, SettingsTable, WriteOptions, WriteReport, diff, plan,
 };
 use brushwork_link::transport::Stream;
+use brushwork_link::{Message, UnitAddress};
 
 use super::applicable;
 use crate::family;
@@ -32,7 +32,7 @@ pub struct UnitSettings {
     /// What stands in fields and is no value yet, by key.
     typed: BTreeMap<String, Typed>,
     /// What went wrong with a row last, by key.
-    troubles: BTreeMap<String, String>,
+    troubles: BTreeMap<String, Message>,
     /// Rows written since EEPROM was last known.
     written: BTreeSet<String>,
     /// How far the controller was asked for each setting.
@@ -68,7 +68,7 @@ pub struct Before {
 struct Typed {
     text: String,
     /// Why it is no value; empty while it is being typed.
-    refusal: String,
+    refusal: Message,
 }
 
 /// Whether the controller would work with the same settings after a power cycle.
@@ -223,9 +223,9 @@ impl UnitSettings {
     }
 
     /// Why what was typed is not taken, or what went wrong with the row last.
-    pub fn trouble(&self, key: &str) -> Option<&str> {
-        let refusal = self.typed.get(key).map(|typed| typed.refusal.as_str());
-        refusal.filter(|text| !text.is_empty()).or_else(|| self.troubles.get(key).map(String::as_str))
+    pub fn trouble(&self, key: &str) -> Option<&Message> {
+        let refusal = self.typed.get(key).map(|typed| &typed.refusal);
+        refusal.filter(|why| !why.is_empty()).or_else(|| self.troubles.get(key))
     }
 
     /// Why the row cannot be changed: not at all, or not as the other settings are.
@@ -262,7 +262,7 @@ impl UnitSettings {
     /// What stands in the row's field while it is being typed.
     pub fn type_in(&mut self, key: &str, text: String) {
         self.changed();
-        self.typed.insert(key.to_owned(), Typed { text, refusal: String::new() });
+        self.typed.insert(key.to_owned(), Typed { text, refusal: Message::default() });
     }
 
     /// Takes what was typed as the row's value. What is no value stays in the field, with the reason.
@@ -327,8 +327,8 @@ impl UnitSettings {
     }
 
     /// What was typed and refused, a sentence each.
-    pub fn refused(&self) -> Vec<&str> {
-        self.typed.values().map(|typed| typed.refusal.as_str()).filter(|text| !text.is_empty()).collect()
+    pub fn refused(&self) -> Vec<&Message> {
+        self.typed.values().map(|typed| &typed.refusal).filter(|why| !why.is_empty()).collect()
     }
 
     /// The commands that the edits need, or why they cannot be written.
@@ -394,7 +394,7 @@ impl UnitSettings {
     /// All settings were read.
     pub(super) fn note_read(&mut self, report: ReadReport, from_eeprom: bool) {
         let each = |failure: &brushwork_link::settings::ReadFailure| {
-            let why = failure.failure.to_string();
+            let why = failure.failure.message();
             failure.keys.iter().map(move |key| (key.clone(), why.clone())).collect::<Vec<_>>()
         };
         self.troubles = report.failures.iter().flat_map(each).collect();

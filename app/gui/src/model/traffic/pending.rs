@@ -1,5 +1,6 @@
 //! The bytes that wait to be sent: edited settings that were not written yet, and what the sliders stand for.
 
+use brushwork_link::Message;
 use brushwork_link::device::Drive;
 
 use crate::model::{Connection, Screen};
@@ -14,7 +15,7 @@ pub struct Pending {
 }
 
 /// All packets that wait, in the order in which they would be sent; or why the settings cannot be written as they are.
-pub fn pending(connection: &Connection, screen: Screen) -> (Vec<Pending>, Vec<String>) {
+pub fn pending(connection: &Connection, screen: Screen) -> (Vec<Pending>, Vec<Message>) {
     let Some(identity) = connection.link.identity() else { return (Vec::new(), Vec::new()) };
     let (address, generation) = (identity.unit_address(), identity.generation);
     let packet = |title: String, bytes: Vec<u8>| {

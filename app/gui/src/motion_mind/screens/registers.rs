@@ -269,7 +269,7 @@ fn about_ui(ui: &mut Ui, connection: &Connection, register: &Register) {
     let Some(unit) = connection.settings.unit() else { return };
     for row in rows_of(unit, register) {
         if let Some(trouble) = unit.trouble(&row.key) {
-            ui.add(Label::new(RichText::new(trouble).color(palette.error)).wrap());
+            ui.add(Label::new(RichText::new(trouble.to_string()).color(palette.error)).wrap());
         }
         if let Some(reason) = unit.locked(row).filter(|_| row.key == key(register) && register.is_writable())
         {

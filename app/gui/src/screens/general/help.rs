@@ -35,7 +35,7 @@ fn row_ui(ui: &mut Ui, unit: &UnitSettings, row: &Row) {
     let palette = Palette::of(ui);
     ui.strong(row.title());
     if let Some(trouble) = unit.trouble(&row.key) {
-        ui.add(Label::new(RichText::new(trouble).color(palette.error)).wrap());
+        ui.add(Label::new(RichText::new(trouble.to_string()).color(palette.error)).wrap());
     }
     if let Some(reason) = unit.locked(row) {
         ui.add(Label::new(RichText::new(reason).color(palette.warning)).wrap());

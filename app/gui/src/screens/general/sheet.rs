@@ -1,5 +1,6 @@
 //! What each act will do, shown before it is done; and what did not go as wanted, after.
 
+use brushwork_link::Message;
 use brushwork_link::settings::{Difference, Plan, diff};
 use brushwork_link::transport::Stream;
 use brushwork_values::hex;
@@ -164,7 +165,8 @@ fn bytes_ui(ui: &mut Ui, unit: &UnitSettings, plan: &Plan) {
     let generation = unit.table().subject().generation;
     CollapsingHeader::new("Show the bytes").show(ui, |ui| {
         for step in &plan.steps {
-            let bytes = step.bytes(address, generation).map_or_else(|error| error, |bytes| hex(&bytes));
+            let bytes =
+                step.bytes(address, generation).map_or_else(|why| why.to_string(), |bytes| hex(&bytes));
             ui.label(format!("{}: {}", step.title(), step.words(address, generation)));
             ui.label(RichText::new(bytes).monospace().weak());
         }
@@ -239,7 +241,7 @@ fn defaults_ui(ui: &mut Ui, unit: &UnitSettings, words: &SettingsWords) -> Vec<O
     vec![(words.defaults_now, Act::FamilyAction(SettingsAction::RestoreDefaults), true)]
 }
 
-fn report_ui(ui: &mut Ui, title: &str, sentences: &[String]) -> Vec<Offer> {
+fn report_ui(ui: &mut Ui, title: &str, sentences: &[Message]) -> Vec<Offer> {
     title_ui(ui, title);
     for sentence in sentences {
         indicator_ui(ui, IndicatorState::Error, sentence);

@@ -2,6 +2,7 @@
 
 use brushwork_link::settings::Difference;
 use egui::{Grid, Label, RichText, Ui, vec2};
+use std::fmt::Display;
 
 use crate::model::{IndicatorState, SettingsAction, Settle, UnitSettings};
 
@@ -28,10 +29,10 @@ pub fn text_ui(ui: &mut Ui, text: &str) {
     ui.add(Label::new(text).wrap());
 }
 
-pub fn indicator_ui(ui: &mut Ui, state: IndicatorState, text: &str) {
+pub fn indicator_ui(ui: &mut Ui, state: IndicatorState, text: &(impl Display + ?Sized)) {
     ui.horizontal_top(|ui| {
         state.ui(ui, vec2(18.0, 18.0), 6.0);
-        ui.add(Label::new(text).wrap());
+        ui.add(Label::new(text.to_string()).wrap());
     });
 }
 

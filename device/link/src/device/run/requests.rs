@@ -9,7 +9,7 @@ use crate::device::request::Request;
 use crate::device::signals::MOTION_LIFE;
 use crate::exchange::ExchangeError;
 use crate::failure::Failure;
-use brushwork_values::{Motor, Value};
+use brushwork_values::{Message, Motor, Value};
 use std::time::Duration;
 
 /// How far requests are looked ahead to find one that replaces an earlier one.
@@ -137,7 +137,7 @@ impl DeviceLoop {
         self.tell_armed(armed, warnings);
     }
 
-    fn tell_armed(&mut self, armed: Armed, warnings: Vec<String>) {
+    fn tell_armed(&mut self, armed: Armed, warnings: Vec<Message>) {
         let Armed { scope, controller_timeout } = armed;
         let address = self.units[self.selected].controller.identity().address;
         self.outbox.send(Event::Armed { address, scope, controller_timeout, warnings });

@@ -14,6 +14,7 @@ use super::super::write_report::{RowState, WriteReport};
 use super::journal::Act;
 use super::keeper::{Ending, Entry, Keeper};
 use crate::failure::Failure;
+use crate::messages::WriteMessage;
 use crate::wire::Wire;
 use std::time::Duration;
 
@@ -169,7 +170,7 @@ fn look_again(
     for row in report.rows.iter_mut().filter(|row| row.state == RowState::Taken) {
         if let Some(now) = after.image.get(&row.key).filter(|now| *now != row.wanted) {
             row.found = Some(now);
-            row.state = RowState::DidNotTake { why: LOST_AGAIN.to_owned() };
+            row.state = RowState::DidNotTake { why: WriteMessage::LostAgain.into() };
         }
     }
     let is_ours = |key: &str| report.rows.iter().any(|row| row.key == key);
@@ -178,7 +179,7 @@ fn look_again(
     });
     let sentence = |difference: Difference| {
         let row = table.row(&difference.key)?;
-        Some(format!("{}, which was not asked for. {RESTARTED}", difference.describe(row)))
+        Some(WriteMessage::DisturbedByRestart { difference: difference.describe(row) }.into())
     };
     for sentence in disturbed.filter_map(sentence) {
         if !report.warnings.contains(&sentence) {
@@ -190,10 +191,6 @@ fn look_again(
 
 /// A unit that restarts more often than this while it is looked at is not waited for.
 const LOOKS: usize = 4;
-
-const RESTARTED: &str = "The controller seems to have restarted meanwhile.";
-const LOST_AGAIN: &str =
-    "It had been taken and was lost again: the controller seems to have restarted meanwhile.";
 
 /// As `save_eeprom`, with a backup and a journal. Nothing is saved when those cannot be kept.
 pub fn save_kept(

@@ -7,6 +7,8 @@ use super::super::row::Row;
 use super::super::table::SettingsTable;
 use super::super::value::SettingValue;
 use super::journal::{Act, Journal};
+use crate::messages::{AftermathMessage, settings};
+use brushwork_values::{Listed, Message};
 
 /// A journal compared with what the controller holds now.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -100,48 +102,43 @@ impl Aftermath {
     }
 
     /// What happened, in a sentence or two.
-    pub fn headline(&self) -> String {
-        let Self { act, begun, .. } = self;
+    pub fn headline(&self) -> Message {
+        let (act, begun) = (self.act, self.begun.clone());
         let cut = match act {
-            Act::Write => format!("A write of settings begun {begun} was cut short."),
-            Act::Save => format!("A save to EEPROM begun {begun} was cut short."),
-            Act::Defaults => format!("Restoring the defaults, begun {begun}, was cut short."),
-            Act::Reload => format!("Loading the settings from EEPROM, begun {begun}, was cut short."),
-            Act::Firmware => format!("A firmware change begun {begun} was cut short."),
-            Act::Trial => format!("A tuning run or a calibration begun {begun} was cut short."),
+            Act::Write => AftermathMessage::WriteCut { begun },
+            Act::Save => AftermathMessage::SaveCut { begun },
+            Act::Defaults => AftermathMessage::DefaultsCut { begun },
+            Act::Reload => AftermathMessage::ReloadCut { begun },
+            Act::Firmware => AftermathMessage::FirmwareCut { begun },
+            Act::Trial => AftermathMessage::TrialCut { begun },
         };
         let state = match (self.is_all_new(), self.is_all_old(), act) {
-            (true, true, Act::Trial) => "Every setting is as it was before.".to_owned(),
+            (true, true, Act::Trial) => AftermathMessage::AllAsBefore,
             (_, _, Act::Trial) => {
-                format!("Not as before: {}.", settings(self.disturbed.len() + self.unread.len()))
+                let settings = settings(self.disturbed.len() + self.unread.len());
+                AftermathMessage::NotAsBefore { settings }
             }
-            (true, true, _) => "No setting had to change.".to_owned(),
-            (true, _, Act::Save) => format!(
-                "The controller works with the values that were to be saved ({} new). Whether its EEPROM has \
-                 them is not known if it kept its power since: save again to be sure.",
-                self.new.len()
-            ),
-            (true, ..) => format!("All {} hold the new value.", settings(self.new.len())),
-            (_, true, _) => format!("All {} hold the old value.", settings(self.old.len())),
-            _ => format!("The controller holds a mix: {}.", self.counts()),
+            (true, true, _) => AftermathMessage::NoneToChange,
+            (true, _, Act::Save) => AftermathMessage::WorksWithThem { count: self.new.len() },
+            (true, ..) => AftermathMessage::AllNew { settings: settings(self.new.len()) },
+            (_, true, _) => AftermathMessage::AllOld { settings: settings(self.old.len()) },
+            _ => AftermathMessage::Mixed { counts: self.counts() },
         };
-        format!("{cut} {state}")
+        AftermathMessage::Headline { cut: cut.into(), state: state.into() }.into()
     }
 
-    fn counts(&self) -> String {
+    fn counts(&self) -> Listed {
+        let all = [&self.new, &self.old, &self.other, &self.disturbed, &self.unread];
+        let [new, old, other, disturbed, unread] = all.map(Vec::len);
         let parts = [
-            (self.new.len(), "new"),
-            (self.old.len(), "old"),
-            (self.other.len(), "neither old nor new"),
-            (self.disturbed.len(), "changed though they were to stay"),
-            (self.unread.len(), "not read"),
+            (new, AftermathMessage::New { count: new }),
+            (old, AftermathMessage::Old { count: old }),
+            (other, AftermathMessage::Neither { count: other }),
+            (disturbed, AftermathMessage::Changed { count: disturbed }),
+            (unread, AftermathMessage::NotRead { count: unread }),
         ];
-        let parts: Vec<String> = parts
-            .iter()
-            .filter(|(count, _)| *count > 0)
-            .map(|(count, what)| format!("{count} {what}"))
-            .collect();
-        parts.join(", ")
+        let counted = parts.into_iter().filter(|(count, _)| *count > 0);
+        Listed(counted.map(|(_, message)| message.into()).collect())
     }
 
     /// Each list with its heading, empty ones left out.
@@ -157,7 +154,7 @@ impl Aftermath {
     }
 
     /// A sentence for each setting concerned, those with old values first.
-    pub fn sentences(&self, table: &SettingsTable) -> Vec<String> {
+    pub fn sentences(&self, table: &SettingsTable) -> Vec<Message> {
         let all = [&self.old, &self.other, &self.disturbed, &self.unread, &self.new];
         let held = all.into_iter().flatten();
         held.filter_map(|held| Some(held.sentence(table.row(&held.key)?))).collect()
@@ -166,27 +163,22 @@ impl Aftermath {
 
 impl Held {
     /// "Motor 1: velocity P holds the old value 1.000; it was to become 2.500."
-    pub fn sentence(&self, row: &Row) -> String {
+    pub fn sentence(&self, row: &Row) -> Message {
         let text = |value: Option<SettingValue>| {
             value.map_or_else(|| "unknown".to_owned(), |value| row.format(value))
         };
         let (title, old, new, now) = (row.title(), text(self.old), text(self.new), text(self.now));
         match (self.now, self.new) {
-            (None, _) => format!("{title} could not be read; it was to become {new}."),
+            (None, _) => AftermathMessage::Unread { title, new },
             (Some(_), new_value) if new_value.is_none_or(|new| self.old == Some(new)) => {
-                format!("{title} was {old} and is {now}; it was to stay as it was.")
+                AftermathMessage::WasToStay { title, old, now }
             }
-            (Some(value), Some(new)) if value == new => {
-                format!("{title} holds the new value {now}; it was {old} before.")
-            }
+            (Some(value), Some(new)) if value == new => AftermathMessage::HoldsNew { title, old, now },
             (Some(value), Some(_)) if self.old.is_none_or(|old| old == value) => {
-                format!("{title} holds the old value {now}; it was to become {new}.")
+                AftermathMessage::HoldsOld { title, new, now }
             }
-            _ => format!("{title} is {now}: neither the old value {old} nor the new one {new}."),
+            _ => AftermathMessage::HoldsNeither { title, old, new, now },
         }
+        .into()
     }
-}
-
-fn settings(count: usize) -> String {
-    if count == 1 { "1 setting".to_owned() } else { format!("{count} settings") }
 }

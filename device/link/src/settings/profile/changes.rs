@@ -7,7 +7,9 @@ use super::super::table::SettingsTable;
 use super::content::Profile;
 use super::error::{Problem, ProfileError};
 use crate::family::Model;
+use crate::messages::ProfileMessage;
 use crate::unit::FirmwareGeneration;
+use brushwork_values::Message;
 
 /// What a profile asks of a controller.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,7 +17,7 @@ pub struct ProfileChanges {
     /// The values that differ and can be written.
     pub wanted: SettingsImage,
     /// Those that differ and cannot be written on this controller, a sentence each.
-    pub left_out: Vec<String>,
+    pub left_out: Vec<Message>,
 }
 
 impl Profile {
@@ -33,15 +35,12 @@ impl Profile {
         let mut wanted = changes(table, ram, &self.settings);
         for (key, value) in self.settings.iter() {
             match table.row(key) {
-                None => problems.push(Problem::at_key(key, "The connected controller has no such setting.")),
+                None => problems.push(Problem::at_key(key, ProfileMessage::NoSuchSettingConnected)),
                 Some(_) if wanted.get(key).is_none() => {}
                 Some(row) => match row.locked(simulated) {
                     Some(reason) => {
-                        left_out.push(format!(
-                            "{}: {} is not written. {reason}",
-                            row.title(),
-                            row.format(value)
-                        ));
+                        let (title, value) = (row.title(), row.format(value));
+                        left_out.push(ProfileMessage::Locked { title, value, reason }.into());
                         wanted.remove(key);
                     }
                     None => {
@@ -75,13 +74,16 @@ impl Profile {
     }
 }
 
-pub fn model_misfit(profile: &Model, connected: &Model) -> String {
-    format!(
-        "The profile was made for the {} ({}), the connected controller is the {} ({}).",
-        profile.name, profile.rating, connected.name, connected.rating
-    )
+pub fn model_misfit(profile: &Model, connected: &Model) -> Message {
+    ProfileMessage::OtherModel {
+        made_for: profile.name,
+        its_rating: profile.rating,
+        connected: connected.name,
+        rating: connected.rating,
+    }
+    .into()
 }
 
-pub fn generation_misfit(profile: FirmwareGeneration, connected: FirmwareGeneration) -> String {
-    format!("The profile was made for firmware {profile}, the connected controller has {connected}.")
+pub fn generation_misfit(made_for: FirmwareGeneration, connected: FirmwareGeneration) -> Message {
+    ProfileMessage::OtherGeneration { made_for, connected }.into()
 }

@@ -5,6 +5,7 @@ use super::super::subject::Subject;
 use super::super::table::SettingsTable;
 use super::error::Problem;
 use crate::unit::UnitAddress;
+use brushwork_values::Message;
 
 /// The schema this program writes, and the newest it reads.
 pub const SCHEMA: u64 = 2;
@@ -37,7 +38,7 @@ pub struct OpenedProfile {
     /// The profile.
     pub profile: Profile,
     /// What an older schema said otherwise, a sentence each.
-    pub upgraded: Vec<String>,
+    pub upgraded: Vec<Message>,
     /// Faults that were corrected.
     pub corrected: Vec<Problem>,
 }

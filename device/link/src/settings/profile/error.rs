@@ -3,6 +3,7 @@
 use std::fmt;
 use std::path::PathBuf;
 
+use brushwork_values::Message;
 use thiserror::Error;
 
 /// One fault of a profile.
@@ -13,11 +14,11 @@ pub struct Problem {
     /// Line and column in the text, both from 1, where known.
     pub position: Option<(usize, usize)>,
     /// The fault as a sentence.
-    pub sentence: String,
+    pub sentence: Message,
 }
 
 impl Problem {
-    pub(super) fn at_key(path: &str, sentence: impl Into<String>) -> Self {
+    pub(super) fn at_key(path: &str, sentence: impl Into<Message>) -> Self {
         Self { path: path.to_owned(), position: None, sentence: sentence.into() }
     }
 }
@@ -30,9 +31,11 @@ impl fmt::Display for Problem {
             (path, None) => write!(f, "{path}: ")?,
             (path, Some((line, column))) => write!(f, "{path} (line {line}, column {column}): ")?,
         }
-        f.write_str(&self.sentence)
+        write!(f, "{}", self.sentence)
     }
 }
+
+impl std::error::Error for Problem {}
 
 /// A profile that is not taken, with every fault found.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]

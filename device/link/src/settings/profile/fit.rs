@@ -10,6 +10,8 @@ use super::super::table::SettingsTable;
 use super::super::value::SettingValue;
 use super::changes::{generation_misfit, model_misfit};
 use super::content::Profile;
+use crate::messages::ProfileMessage;
+use brushwork_values::Message;
 
 /// A profile fitted to another controller.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,7 +19,7 @@ pub struct Fitted {
     /// The profile as it is for that controller.
     pub profile: Profile,
     /// What was changed or left out, a sentence each; empty when it fitted as it was.
-    pub changes: Vec<String>,
+    pub changes: Vec<Message>,
 }
 
 impl Profile {
@@ -39,7 +41,7 @@ struct Fitter<'f> {
     from: SettingsTable,
     to: &'f SettingsTable,
     image: SettingsImage,
-    changes: Vec<String>,
+    changes: Vec<Message>,
     /// What the settings of one thing (a pin, a group) have nowhere to go to: its name, and what was lost there.
     left_out: Vec<LeftOut>,
 }
@@ -105,7 +107,8 @@ impl<'f> Fitter<'f> {
         let (Some(old), Some(new)) = (&row.instance, &there.instance) else { return };
         if row.group == Group::PINS && old.name != new.name && !moved.contains(&old.number) {
             moved.push(old.number);
-            self.changes.push(format!("The settings of input {} go to {}.", old.name, new.name));
+            let (from, to) = (old.name.clone(), new.name.clone());
+            self.changes.push(ProfileMessage::InputMoved { from, to }.into());
         }
     }
 
@@ -129,12 +132,8 @@ impl<'f> Fitter<'f> {
         if let Some(why) = why {
             self.changes.push(why);
         } else if !is_same_number(value, fitted) {
-            let title = there.title();
-            self.changes.push(format!(
-                "{title}: {} becomes {}, the nearest step there.",
-                row.format(value),
-                there.format(fitted)
-            ));
+            let (title, value, step) = (there.title(), row.format(value), there.format(fitted));
+            self.changes.push(ProfileMessage::NearestStep { title, value, step }.into());
         }
         self.image.set(&there.key, fitted);
     }
@@ -165,17 +164,16 @@ impl<'f> Fitter<'f> {
 
     /// One sentence for each thing whose settings went nowhere; those not at their default by name.
     fn tell_left_out(&mut self) {
-        let there =
-            format!("The {} with firmware {}", self.to.subject().model.name, self.to.subject().generation);
-        for left in &self.left_out {
-            let LeftOut { thing, count, worth_naming } = left;
-            let settings =
-                if *count == 1 { "its setting is".to_owned() } else { format!("its {count} settings are") };
-            let lost = match worth_naming.as_slice() {
-                [] => "at the default".to_owned(),
-                named => format!("not at the default: {}", named.join(", ")),
+        let (model, generation) = (self.to.subject().model.name, self.to.subject().generation);
+        for LeftOut { thing, count, worth_naming } in std::mem::take(&mut self.left_out) {
+            let named = worth_naming.join(", ");
+            let told = match (count, worth_naming.is_empty()) {
+                (1, true) => ProfileMessage::DefaultLeftOut { model, generation, thing },
+                (1, false) => ProfileMessage::OneLeftOut { model, generation, thing, named },
+                (_, true) => ProfileMessage::DefaultsLeftOut { model, generation, thing, count },
+                (_, false) => ProfileMessage::SomeLeftOut { model, generation, thing, count, named },
             };
-            self.changes.push(format!("{there} has no place for {thing}: {settings} left out ({lost})."));
+            self.changes.push(told.into());
         }
     }
 }

@@ -4,7 +4,9 @@
 use std::collections::HashSet;
 
 use crate::family::{FamilyRef, Model, families, model_named};
+use crate::messages::ProfileMessage;
 use crate::unit::{FirmwareGeneration, UnitAddress};
+use brushwork_values::Message;
 
 use super::super::image::SettingsImage;
 use super::super::kind::Kind;
@@ -24,7 +26,7 @@ const MOST_PINS: i64 = 32;
 pub(super) fn parse(text: &str, strictness: Strictness) -> Result<OpenedProfile, ProfileError> {
     let root: Node = serde_json::from_str(text).map_err(|error| not_json(&error))?;
     let Node::Object(members) = root else {
-        return Err(whole("The file holds no JSON object, so it is no settings profile."));
+        return Err(whole(ProfileMessage::NoObject));
     };
     let mut reader = Reader { text, problems: Vec::new(), warnings: Vec::new(), strictness };
     let found = reader.check_format(&members)?;
@@ -70,22 +72,15 @@ impl Reader<'_> {
     fn check_format(&mut self, members: &Members) -> Result<u64, ProfileError> {
         match find(members, "format") {
             Some(Node::Text(format)) if format == FORMAT => {}
-            _ => {
-                return Err(whole(format!(
-                    "This is no settings profile: it does not say \"format\": \"{FORMAT}\"."
-                )));
-            }
+            _ => return Err(whole(ProfileMessage::NoProfile { format: FORMAT })),
         }
         match find(members, "schema") {
             Some(Node::Int(schema)) if *schema > 0 => match u64::try_from(*schema) {
                 Ok(schema) if schema <= SCHEMA => Ok(schema),
-                _ => Err(self.refusal(
-                    "schema",
-                    format!(
-                        "The profile has schema {schema}, this program reads up to {SCHEMA}. A newer program \
-                         wrote it."
-                    ),
-                )),
+                _ => {
+                    let told = ProfileMessage::NewerSchema { schema: *schema, known: SCHEMA };
+                    Err(self.refusal("schema", told))
+                }
             },
             other => Err(self.refusal("schema", expected("a schema number from 1", other))),
         }
@@ -95,10 +90,10 @@ impl Reader<'_> {
         let mut seen = HashSet::new();
         for (name, _) in members {
             if !MEMBERS.contains(&name.as_str()) {
-                self.problem(name, "A profile has no such member.");
+                self.problem(name, ProfileMessage::NoSuchMember);
             }
             if !seen.insert(name) {
-                self.problem(name, "The member stands twice.");
+                self.problem(name, ProfileMessage::MemberTwice);
             }
         }
     }
@@ -133,10 +128,8 @@ impl Reader<'_> {
         if model.is_none() {
             let known = families().iter().flat_map(|family| family.models()).map(|model| model.key);
             let known: Vec<&str> = known.collect();
-            self.problem(
-                "model",
-                format!("{} is no known model; known are {}.", quote(&key), known.join(", ")),
-            );
+            let told = ProfileMessage::UnknownModel { model: quote(&key), known: known.join(", ") };
+            self.problem("model", told);
         }
         model
     }
@@ -146,7 +139,7 @@ impl Reader<'_> {
         match family.check_generation(number) {
             Ok(number) => Some(FirmwareGeneration::new(family, number)),
             Err(why) => {
-                self.problem("generation", format!("{number} {why}."));
+                self.problem("generation", ProfileMessage::BadGeneration { number, why });
                 None
             }
         }
@@ -156,10 +149,8 @@ impl Reader<'_> {
         let text = self.string(members, "address")?;
         let address = UnitAddress::parse(family, &text);
         if address.is_none() {
-            self.problem(
-                "address",
-                format!("{} is no address; there are {}.", quote(&text), family.addresses()),
-            );
+            let told = ProfileMessage::NoAddress { text: quote(&text), addresses: family.addresses() };
+            self.problem("address", told);
         }
         address
     }
@@ -167,7 +158,7 @@ impl Reader<'_> {
     fn count(&mut self, members: &Members, name: &str) -> Option<usize> {
         let number = self.int(members, name)?;
         if !(0..=MOST_PINS).contains(&number) {
-            self.problem(name, format!("{number} is not from 0 to {MOST_PINS}."));
+            self.problem(name, ProfileMessage::CountOutOfRange { number, most: MOST_PINS });
             return None;
         }
         usize::try_from(number).ok()
@@ -201,7 +192,7 @@ impl Reader<'_> {
         let mut image = SettingsImage::default();
         for (key, node) in entries {
             if image.get(key).is_some() {
-                self.problem(&setting_path(key), "The setting stands twice.");
+                self.problem(&setting_path(key), ProfileMessage::SettingTwice);
                 continue;
             }
             match table.row(key) {
@@ -237,7 +228,7 @@ impl Reader<'_> {
     }
 
     /// A fault of one setting: a refusal, or a warning when faults are corrected.
-    fn minor(&mut self, path: &str, sentence: impl Into<String>) {
+    fn minor(&mut self, path: &str, sentence: impl Into<Message>) {
         let problem = self.located(path, sentence);
         match self.strictness {
             Strictness::Refuse => self.problems.push(problem),
@@ -245,17 +236,17 @@ impl Reader<'_> {
         }
     }
 
-    fn problem(&mut self, path: &str, sentence: impl Into<String>) {
+    fn problem(&mut self, path: &str, sentence: impl Into<Message>) {
         let problem = self.located(path, sentence);
         self.problems.push(problem);
     }
 
-    fn refusal(&self, path: &str, sentence: impl Into<String>) -> ProfileError {
+    fn refusal(&self, path: &str, sentence: impl Into<Message>) -> ProfileError {
         ProfileError { problems: vec![self.located(path, sentence)] }
     }
 
     /// A problem with the line and column where the member's name first stands as a name.
-    fn located(&self, path: &str, sentence: impl Into<String>) -> Problem {
+    fn located(&self, path: &str, sentence: impl Into<Message>) -> Problem {
         let name = quote(path.strip_prefix(SETTING_PREFIX).unwrap_or(path));
         let is_name = |at: &usize| self.text[at + name.len()..].trim_start().starts_with(':');
         let offset = self.text.match_indices(&name).map(|(at, _)| at).find(is_name);
@@ -270,19 +261,19 @@ fn setting_path(key: &str) -> String {
     format!("{SETTING_PREFIX}{key}")
 }
 
-fn unknown_setting(subject: &Subject) -> String {
-    format!("The {} with firmware {} has no such setting.", subject.model.name, subject.generation)
+fn unknown_setting(subject: &Subject) -> ProfileMessage {
+    ProfileMessage::NoSuchSetting { model: subject.model.name, generation: subject.generation }
 }
 
 /// The value of `{ "value": ..., "unit": ... }` or `{ "code": ... }`, not yet checked against the range.
-fn read_entry(row: &Row, node: &Node) -> Result<SettingValue, String> {
+fn read_entry(row: &Row, node: &Node) -> Result<SettingValue, ProfileMessage> {
     let Node::Object(members) = node else {
         return Err(expected("an object with a \"value\"", Some(node)));
     };
     if let Some((name, _)) =
         members.iter().find(|(name, _)| !matches!(name.as_str(), "value" | "unit" | "code"))
     {
-        return Err(format!("A setting has no member {}.", quote(name)));
+        return Err(ProfileMessage::NoSuchSettingMember { name: quote(name) });
     }
     if let (Some(Node::Int(raw)), Kind::Bool | Kind::Choice(_)) = (find(members, "code"), row.kind) {
         return Ok(row.decode(*raw));
@@ -291,23 +282,19 @@ fn read_entry(row: &Row, node: &Node) -> Result<SettingValue, String> {
     read_value(row, find(members, "value"))
 }
 
-fn check_unit(row: &Row, unit: Option<&Node>) -> Result<(), String> {
+fn check_unit(row: &Row, unit: Option<&Node>) -> Result<(), ProfileMessage> {
     let wanted = row.unit.symbol();
     match unit {
         None if wanted.is_empty() => Ok(()),
         Some(Node::Text(unit)) if unit == wanted => Ok(()),
-        None => Err(format!("The unit is missing; it has to be {}.", quote(wanted))),
-        Some(Node::Text(unit)) if wanted.is_empty() => {
-            Err(format!("The unit is {}; there has to be none.", quote(unit)))
-        }
-        Some(Node::Text(unit)) => {
-            Err(format!("The unit is {}; it has to be {}.", quote(unit), quote(wanted)))
-        }
+        None => Err(ProfileMessage::NoUnit { wanted: quote(wanted) }),
+        Some(Node::Text(unit)) if wanted.is_empty() => Err(ProfileMessage::UnitTooMany { unit: quote(unit) }),
+        Some(Node::Text(unit)) => Err(ProfileMessage::OtherUnit { unit: quote(unit), wanted: quote(wanted) }),
         Some(other) => Err(expected("a text as unit", Some(other))),
     }
 }
 
-fn read_value(row: &Row, value: Option<&Node>) -> Result<SettingValue, String> {
+fn read_value(row: &Row, value: Option<&Node>) -> Result<SettingValue, ProfileMessage> {
     match (row.kind, value) {
         (Kind::Bool, Some(Node::Bool(on))) => Ok(SettingValue::Bool(*on)),
         (Kind::Int, Some(Node::Int(number))) => Ok(SettingValue::Int(*number)),
@@ -317,7 +304,7 @@ fn read_value(row: &Row, value: Option<&Node>) -> Result<SettingValue, String> {
             Some(code) => Ok(SettingValue::Choice(code.key)),
             None => {
                 let keys: Vec<&str> = codes.iter().map(|code| code.key).collect();
-                Err(format!("{} is none of {}.", quote(key), keys.join(", ")))
+                Err(ProfileMessage::NoneOf { text: quote(key), keys: keys.join(", ") })
             }
         },
         (Kind::Bool, other) => Err(expected("true or false", other)),
@@ -331,14 +318,14 @@ fn find<'m>(members: &'m Members, name: &str) -> Option<&'m Node> {
     members.iter().find(|(member, _)| member == name).map(|(_, node)| node)
 }
 
-fn expected(what: &str, got: Option<&Node>) -> String {
+fn expected(wanted: &'static str, got: Option<&Node>) -> ProfileMessage {
     match got {
-        Some(node) => format!("Expected {what}, got {}.", node.kind()),
-        None => format!("Expected {what}, and there is nothing."),
+        Some(node) => ProfileMessage::Expected { wanted, got: node.kind() },
+        None => ProfileMessage::ExpectedAny { wanted },
     }
 }
 
-fn whole(sentence: impl Into<String>) -> ProfileError {
+fn whole(sentence: ProfileMessage) -> ProfileError {
     ProfileError { problems: vec![Problem::at_key("", sentence)] }
 }
 
@@ -346,9 +333,8 @@ fn not_json(error: &serde_json::Error) -> ProfileError {
     let full = error.to_string();
     let what = full.split(" at line ").next().unwrap_or(&full);
     let position = (error.line() > 0).then(|| (error.line(), error.column()));
-    ProfileError {
-        problems: vec![Problem { path: String::new(), position, sentence: format!("Not JSON: {what}.") }],
-    }
+    let sentence = ProfileMessage::NotJson { what: what.to_owned() }.into();
+    ProfileError { problems: vec![Problem { path: String::new(), position, sentence }] }
 }
 
 /// Line and column, both from 1, of a byte of `text`.

@@ -5,6 +5,8 @@
 
 use super::content::SCHEMA;
 use super::json::Node;
+use crate::messages::ProfileMessage;
+use brushwork_values::Message;
 
 /// The members of a profile's file, in their order.
 pub(super) type Members = Vec<(String, Node)>;
@@ -13,14 +15,14 @@ pub(super) type Members = Vec<(String, Node)>;
 struct Step {
     from: u64,
     /// Changes the members; gives a sentence for each change.
-    apply: fn(&mut Members) -> Vec<String>,
+    apply: fn(&mut Members) -> Vec<Message>,
 }
 
 /// One step for each older schema, in order.
 static STEPS: &[Step] = &[Step { from: 1, apply: name_unit_and_note }];
 
 /// Brings members of schema `from` to the newest one, and says what that changed.
-pub(super) fn upgrade(mut members: Members, from: u64) -> (Members, Vec<String>) {
+pub(super) fn upgrade(mut members: Members, from: u64) -> (Members, Vec<Message>) {
     let mut sentences = Vec::new();
     for step in STEPS.iter().filter(|step| step.from >= from) {
         sentences.extend((step.apply)(&mut members));
@@ -32,12 +34,12 @@ pub(super) fn upgrade(mut members: Members, from: u64) -> (Members, Vec<String>)
 }
 
 /// Schema 2 says which unit the settings came from and why they were kept.
-fn name_unit_and_note(members: &mut Members) -> Vec<String> {
+fn name_unit_and_note(members: &mut Members) -> Vec<Message> {
     let mut sentences = Vec::new();
-    for (name, what) in [("unit", "which unit the settings came from"), ("note", "why they were kept")] {
+    for (name, told) in [("unit", ProfileMessage::UnitUnsaid), ("note", ProfileMessage::NoteUnsaid)] {
         if !members.iter().any(|(member, _)| member == name) {
             members.push((name.to_owned(), Node::Text(String::new())));
-            sentences.push(format!("Schema 1 did not say {what}; that stays open."));
+            sentences.push(told.into());
         }
     }
     sentences

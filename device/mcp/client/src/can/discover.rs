@@ -4,10 +4,12 @@ use crate::can::access::read;
 use crate::can::monitor::Monitor;
 use crate::can::place::Place;
 use crate::controller::identify_node;
+use crate::messages::McpIdentityMessage;
 use brushwork_canopen::adapter::{Decoder, Form};
 use brushwork_canopen::nmt::objects;
 use brushwork_canopen::sdo::Transfer;
 use brushwork_canopen::{Function, NodeId};
+use brushwork_link::Message;
 use brushwork_link::device::StopBytes;
 use brushwork_link::device::controller::{Controller, DiscoverError, Line, Search};
 use brushwork_link::device::{Addresses, DeviceOptions};
@@ -97,7 +99,7 @@ impl CanOpen {
         };
         let mut notes = identity_notes(line, place)?;
         if let Some(state) = self.monitor.state(node) {
-            notes.push(format!("Its heartbeat says: {state}."));
+            notes.push(McpIdentityMessage::Heartbeat { state: state.to_string() }.into());
         }
         let unit = identify_node(line, place, &self.monitor, &version, simulated, notes)?;
         Ok(Some(Ok(Box::new(unit))))
@@ -139,7 +141,7 @@ impl Search for CanOpen {
 }
 
 /// Vendor, product, revision and serial number, as far as the node tells them.
-fn identity_notes(line: &mut Line<'_>, place: Place) -> Result<Vec<String>, ExchangeError> {
+fn identity_notes(line: &mut Line<'_>, place: Place) -> Result<Vec<Message>, ExchangeError> {
     let mut reported = Vec::new();
     for (subindex, name) in [(1, "vendor"), (2, "product"), (3, "revision"), (4, "serial number")] {
         match read(line, place, objects::IDENTITY, subindex) {
@@ -151,11 +153,8 @@ fn identity_notes(line: &mut Line<'_>, place: Place) -> Result<Vec<String>, Exch
             Err(_) => {}
         }
     }
-    Ok(if reported.is_empty() {
-        Vec::new()
-    } else {
-        vec![format!("CANopen identity: {}.", reported.join(", "))]
-    })
+    let identity = McpIdentityMessage::CanOpenIdentity { parts: reported.join(", ") };
+    Ok(if reported.is_empty() { Vec::new() } else { vec![identity.into()] })
 }
 
 fn nothing_there(line: &mut Line<'_>, addresses: Addresses, others: &[String], heard: u64) -> Failure {

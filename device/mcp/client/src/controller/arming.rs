@@ -5,6 +5,8 @@
 
 use crate::can::{MASTER_LIMIT, Monitor, Place};
 use crate::controller::speaker::{Speaker, Wire};
+use crate::messages::McpDriverMessage;
+use brushwork_link::Message;
 use brushwork_link::device::controller::{ArmCheck, Line};
 use brushwork_link::exchange::{Exchange, ExchangeError};
 use brushwork_link::failure::Failure;
@@ -19,9 +21,6 @@ use std::time::Duration;
 /// The stream type "packet serial" and the priority "serial" on the wire (MCP manual 2.3.1, commands 139 and 145).
 const PACKET_SERIAL: i64 = 1;
 const PRIORITY_SERIAL: i64 = 1;
-
-const UNSEEN: &str =
-    "This controller does not tell its status: a fault, a limit or an E-stop is not seen here.";
 
 /// Why motors may not be moved, and what to do about it.
 struct Objection {
@@ -55,7 +54,7 @@ pub fn check(
     }));
     let mut warnings = if objections.is_empty() { coasting(speaker, line)? } else { Vec::new() };
     if !tells_status {
-        warnings.push(UNSEEN.to_owned());
+        warnings.push(McpDriverMessage::StatusUnseen.into());
     }
     let failure =
         |objection: Objection| Failure::new("arm the motors", on, objection.came_back, objection.remedy);
@@ -199,13 +198,13 @@ fn object(came_back: impl Into<String>, remedy: impl Into<String>) -> Objection 
 
 /// Motors in torque control, which inductance and resistance switch on (MCP manual 1.2.11). Assumed: duty 0 is then a current of
 /// 0, so that Stop lets them coast.
-fn coasting(speaker: Speaker, line: &mut Line<'_>) -> Result<Vec<String>, ExchangeError> {
+fn coasting(speaker: Speaker, line: &mut Line<'_>) -> Result<Vec<Message>, ExchangeError> {
     let mut warnings = Vec::new();
     let reads = [commands::READ_INDUCTANCE_RESISTANCE_M1, commands::READ_INDUCTANCE_RESISTANCE_M2];
     for (motor, command) in Motor::BOTH.into_iter().zip(reads) {
         let reply = speaker.ask_if_known(line, command)?;
         if reply.is_some_and(|reply| reply.values.ints().all(|value| value != 0)) {
-            warnings.push(format!("{motor} is in torque control: Stop lets it coast instead of braking it."));
+            warnings.push(McpDriverMessage::Coasts { motor }.into());
         }
     }
     Ok(warnings)

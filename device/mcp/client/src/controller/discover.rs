@@ -4,7 +4,9 @@ use crate::can::{Monitor, Place};
 use crate::controller::speaker::{Speaker, Wire};
 use crate::controller::unit::Mcp;
 use crate::controller::{generation, polling, stopping};
+use crate::messages::McpIdentityMessage;
 use crate::{MCP, McpFacts, firmware_of as generation_number};
+use brushwork_link::Message;
 use brushwork_link::device::StopBytes;
 use brushwork_link::device::controller::{Controller, DiscoverError, Line, Search};
 use brushwork_link::device::{Addresses, DeviceOptions};
@@ -210,7 +212,7 @@ pub fn identify_node(
     monitor: &Monitor,
     version: &str,
     simulated: bool,
-    mut notes: Vec<String>,
+    mut notes: Vec<Message>,
 ) -> Result<Mcp, ExchangeError> {
     let finding = generation::detect_node(line, place)?;
     notes.extend(finding.notes);
@@ -226,13 +228,13 @@ fn finish(
     monitor: Option<Monitor>,
     version: &str,
     simulated: bool,
-    mut notes: Vec<String>,
+    mut notes: Vec<Message>,
 ) -> Result<Mcp, ExchangeError> {
     let polls = polling::find(speaker, line)?;
     let model = models::identify(version);
     let missing = polling::missing(&polls);
     if !missing.is_empty() {
-        notes.push(format!("It does not answer for: {}.", missing.join(", ")));
+        notes.push(McpIdentityMessage::Unanswered { names: missing.join(", ") }.into());
     }
     let is_mcp = model.is_some_and(|model| model.name.starts_with("MCP"));
     let is_node = matches!(speaker.wire, Wire::Objects(_));

@@ -4,6 +4,8 @@
 //! unit need not answer all of them. A reply counts with the length at which its CRC fits.
 
 use crate::can::{Place, Probe as Found, probe as probe_object};
+use crate::messages::McpIdentityMessage;
+use brushwork_link::Message;
 use brushwork_link::device::controller::Line;
 use brushwork_link::exchange::{ExchangeError, Fault, Judgement, Outgoing};
 use brushwork_mcp_wire::crc::crc16_xmodem;
@@ -16,7 +18,7 @@ pub struct Finding {
     /// The generation that fits best.
     pub generation: Generation,
     /// What is odd about it, as sentences.
-    pub notes: Vec<String>,
+    pub notes: Vec<Message>,
 }
 
 /// A read whose reply has two lengths: the short one, the long one, and the first generation that has the long one.
@@ -135,10 +137,10 @@ fn judge(observations: &Observations) -> Finding {
     let mut notes: Vec<_> = seen
         .iter()
         .filter(|(probe, long)| !agrees(generation, probe, *long))
-        .map(|(probe, _)| format!("Command {} answers as another generation does.", probe.command))
+        .map(|(probe, _)| McpIdentityMessage::OtherGeneration { command: probe.command }.into())
         .collect();
     if seen.is_empty() {
-        notes.push("Nothing tells the firmware's generation; it is taken for generation 1.".to_owned());
+        notes.push(McpIdentityMessage::NothingTells.into());
     }
     Finding { generation, notes }
 }

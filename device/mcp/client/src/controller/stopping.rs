@@ -1,7 +1,9 @@
 //! Stopping a unit: at once without asking, then again with its confirmation, and what can still drive it after that.
 
 use crate::controller::speaker::{Speaker, Wire};
+use crate::messages::McpDriverMessage;
 use crate::packet::{Ask, encode_error, gate};
+use brushwork_link::Message;
 use brushwork_link::device::controller::Line;
 use brushwork_link::device::{StopBytes, UnitStop};
 use brushwork_link::exchange::ExchangeError;
@@ -101,7 +103,7 @@ pub fn other_drivers(
     speaker: Speaker,
     line: &mut Line<'_>,
     model: Option<&'static Model>,
-) -> Result<Vec<String>, ExchangeError> {
+) -> Result<Vec<Message>, ExchangeError> {
     let Some(priorities) = speaker.ask_if_known(line, commands::READ_PRIORITIES)? else {
         return Ok(Vec::new());
     };
@@ -117,18 +119,19 @@ pub fn other_drivers(
 }
 
 /// The sentences about one pin.
-fn drivers_of<const L: u8>(pin: &str, record: &Record<'_, L>, levels: &[i64]) -> Vec<String> {
+fn drivers_of<const L: u8>(pin: &str, record: &Record<'_, L>, levels: &[i64]) -> Vec<Message> {
     let kind = record.key(TYPE).unwrap_or_default();
     let mut sentences = Vec::new();
     let target = record.int(TARGET);
     if target != 0 && levels.iter().any(|level| level_key(*level) == kind) {
         let motors =
             brushwork_values::by_raw(codes::SIGNAL_TARGETS, target).map_or("a motor", |code| code.label);
-        sentences.push(format!("The {kind} input {pin} can drive {}.", lower_first(motors)));
+        let (pin, motors) = (pin.to_owned(), lower_first(motors));
+        sentences.push(McpDriverMessage::InputDrives { kind, pin, motors }.into());
     }
     let starts = [record.key(MIN_ACTION), record.key(MAX_ACTION)].contains(&Some("run_script"));
     if kind != "none" && starts {
-        sentences.push(format!("The input {pin} can start the script."));
+        sentences.push(McpDriverMessage::InputStartsScript { pin: pin.to_owned() }.into());
     }
     sentences
 }
@@ -165,8 +168,7 @@ fn stop_script(
     stop.script_ended = Some(stopped.is_ok());
     if let Err(error) = stopped {
         pass_on(&error)?;
-        stop.still_driven_by
-            .push("A script may still run: the controller did not confirm its end.".to_owned());
+        stop.still_driven_by.push(McpDriverMessage::ScriptMayRun.into());
         return Ok(false);
     }
     Ok(true)

@@ -5,6 +5,8 @@ use crate::controller::driving::packets;
 use crate::controller::speaker::{Speaker, Wire};
 use crate::controller::traffic::{describe_received, describe_sent};
 use crate::controller::{arming, polling, stopping};
+use crate::messages::McpDriverMessage;
+use brushwork_link::Message;
 use brushwork_link::device::Described;
 use brushwork_link::device::Drive;
 use brushwork_link::device::Identity;
@@ -70,7 +72,7 @@ impl Controller for Mcp {
         let reads = polling::commands(&self.polls);
         let mut stop = stopping::confirm(self.speaker, line, &reads, scripts && self.runs_scripts, &on)?;
         if scripts && !self.runs_scripts && self.model.is_none() {
-            stop.still_driven_by.push(UNKNOWN_SCRIPT.to_owned());
+            stop.still_driven_by.push(McpDriverMessage::ScriptUnknown.into());
         }
         if stop.buffers_empty == Some(true) {
             self.has_buffered = false;
@@ -79,7 +81,7 @@ impl Controller for Mcp {
         Ok(stop)
     }
 
-    fn other_drivers(&mut self, line: &mut Line<'_>) -> Result<Vec<String>, ExchangeError> {
+    fn other_drivers(&mut self, line: &mut Line<'_>) -> Result<Vec<Message>, ExchangeError> {
         stopping::other_drivers(self.speaker, line, self.model)
     }
 
@@ -252,8 +254,6 @@ impl Mcp {
     }
 }
 
-const UNKNOWN_SCRIPT: &str =
-    "A script may still run: which model this is is not known, so no script was ended.";
 /// Commands that change what arming was based on: time-outs, streams, priorities, address, or all settings at once.
 const UNDERMINING: [u8; 7] = [
     number::SET_SERIAL_TIMEOUT,

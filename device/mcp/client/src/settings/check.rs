@@ -1,5 +1,7 @@
 //! Settings judged together: pairs that contradict each other, and changes that can set a motor in motion.
 
+use crate::messages::McpSettingsMessage;
+use brushwork_link::Message;
 use brushwork_link::settings::SettingValue;
 use brushwork_link::settings::SettingsImage;
 use brushwork_link::settings::SettingsTable;
@@ -15,68 +17,52 @@ pub(super) const ORDERED_PAIRS: &[(&str, &str)] = &[
 /// The row that drives one motor with both channels.
 const BRIDGE_CHANNELS: &str = "unit.bridge_channels";
 
-/// What to know before the channels are bridged (MCP manual 1.8.1, 1.8.2).
-pub const BRIDGE_WARNING: &str = "Bridged channels drive one motor with both outputs: wire that motor to them only after \
-     this is written and saved to EEPROM, and exactly as in MCP manual 1.8.2. Wired before, or wired otherwise, the \
-     controller is damaged.";
-
 /// A script autorun delay below this switches autorun off (MCP manual 2.3.1, command 246).
 pub const SHORTEST_AUTORUN_MS: i64 = 100;
 
 /// What `changes` lets happen by itself: an input that commands a motor, a script that starts at power up.
-pub(super) fn dangers(table: &SettingsTable, after: &SettingsImage, changes: &SettingsImage) -> Vec<String> {
+pub(super) fn dangers(table: &SettingsTable, after: &SettingsImage, changes: &SettingsImage) -> Vec<Message> {
     let mut dangers = Vec::new();
     for pin in 1..=table.subject().pins {
         dangers.extend(input_danger(table, after, changes, pin));
     }
-    if let (Some(SettingValue::Int(delay)), Some(_)) =
+    if let (Some(SettingValue::Int(delay_ms)), Some(_)) =
         (after.get("script.autorun_delay"), changes.get("script.autorun_delay"))
-        && delay >= SHORTEST_AUTORUN_MS
+        && delay_ms >= SHORTEST_AUTORUN_MS
     {
-        dangers
-            .push(format!("A stored script starts {delay} ms after each power up and can move the motors."));
+        dangers.push(McpSettingsMessage::Autorun { delay_ms }.into());
     }
     dangers.extend(arming_obstacle(after, changes));
     dangers.extend(torque_control(table, after, changes));
-    dangers.extend(bridging(changes).map(str::to_owned));
+    dangers.extend(bridging(changes).map(Message::from));
     dangers
 }
 
 /// One motor on both channels, or one on each: the wiring must fit before power is put on it (MCP manual 1.8).
-fn bridging(changes: &SettingsImage) -> Option<&'static str> {
+fn bridging(changes: &SettingsImage) -> Option<McpSettingsMessage> {
     Some(match changes.get(BRIDGE_CHANNELS)? == SettingValue::Bool(true) {
-        true => BRIDGE_WARNING,
-        false => {
-            "The channels are separate again: take the single motor off both of them before this is written, or the \
-             controller is damaged. MCP manual 1.8."
-        }
+        true => McpSettingsMessage::Bridged,
+        false => McpSettingsMessage::Separated,
     })
 }
 
 /// Without the serial input in a priority level this program may not move a motor.
-fn arming_obstacle(after: &SettingsImage, changes: &SettingsImage) -> Option<String> {
+fn arming_obstacle(after: &SettingsImage, changes: &SettingsImage) -> Option<Message> {
     let levels = ["priority.1", "priority.2", "priority.3"];
     let is_new = levels.iter().any(|level| changes.get(level).is_some());
     let has_serial = levels.iter().any(|level| after.get(level) == Some(SettingValue::Choice("serial")));
-    (is_new && !has_serial).then(|| {
-        "Serial is at no priority level then, so this program cannot be armed to move motors.".to_owned()
-    })
+    (is_new && !has_serial).then(|| McpSettingsMessage::SerialNowhere.into())
 }
 
 /// Inductance and resistance together change what duty commands mean (MCP manual 1.2.11, 3.1 MOTORL).
-fn torque_control(table: &SettingsTable, after: &SettingsImage, changes: &SettingsImage) -> Vec<String> {
+fn torque_control(table: &SettingsTable, after: &SettingsImage, changes: &SettingsImage) -> Vec<Message> {
     let reported = |motor: usize| {
         let keys = [format!("motor{motor}.inductance_henries"), format!("motor{motor}.resistance_ohms")];
         let is_new = keys.iter().any(|key| changes.get(key).is_some());
         let is_set = |key: &String| {
             table.row(key).is_some() && after.get(key).is_some_and(|value| value != SettingValue::Number(0.0))
         };
-        (is_new && keys.iter().all(is_set)).then(|| {
-            format!(
-                "Motor {motor} has both L and R then: duty commands set its current instead of its \
-                 voltage, and duty 0 lets it coast."
-            )
-        })
+        (is_new && keys.iter().all(is_set)).then(|| McpSettingsMessage::TorqueControl { motor }.into())
     };
     (1..=2).filter_map(reported).collect()
 }
@@ -88,7 +74,7 @@ fn input_danger(
     after: &SettingsImage,
     changes: &SettingsImage,
     pin: usize,
-) -> Option<String> {
+) -> Option<Message> {
     let key = |field: &str| format!("pin.{pin}.{field}");
     let choice = |key: &str| after.get(key)?.choice();
     let (kind, target) = (choice(&key("type"))?, choice(&key("target"))?);
@@ -99,10 +85,7 @@ fn input_danger(
         return None;
     }
     let target_row = table.row(&key("target"))?;
-    Some(format!(
-        "{} commands {} as soon as this is written, since {kind} inputs are at priority level {level}: the \
-         motor can start.",
-        table.subject().pin_name(pin - 1),
-        target_row.format(SettingValue::Choice(target)).to_lowercase()
-    ))
+    let pin = table.subject().pin_name(pin - 1);
+    let target = target_row.format(SettingValue::Choice(target)).to_lowercase();
+    Some(McpSettingsMessage::InputCommands { pin, target, kind, level }.into())
 }

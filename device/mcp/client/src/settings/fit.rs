@@ -1,6 +1,8 @@
 //! A profile's inputs and encoders on another model: inputs go by their printed name, encoders by their channel.
 
+use crate::messages::McpSettingsMessage;
 use crate::model_of;
+use brushwork_link::Message;
 use brushwork_link::settings::{Fit, Row, SettingValue};
 use brushwork_mcp_wire::codes::ENCODER_PIN_NONE;
 use brushwork_mcp_wire::models::{Model, Pin};
@@ -62,7 +64,7 @@ pub fn encoder_pin(fit: &Fit<'_>, value: SettingValue) -> Option<SettingValue> {
 }
 
 /// Why an input cannot have the type that the profile wants of it.
-pub fn impossible_type(fit: &Fit<'_>, there: &Row, value: SettingValue) -> Option<String> {
+pub fn impossible_type(fit: &Fit<'_>, there: &Row, value: SettingValue) -> Option<Message> {
     if there.pattern != "pin.{n}.type" || fit.profile.subject.model == fit.to.subject().model {
         return None;
     }
@@ -74,11 +76,8 @@ pub fn impossible_type(fit: &Fit<'_>, there: &Row, value: SettingValue) -> Optio
         _ => true,
     };
     (!is_possible).then(|| {
-        format!(
-            "{} cannot be {} on the {}; it measures nothing instead.",
-            pin.label,
-            there.format_bare(value).to_lowercase(),
-            fit.to.subject().model.name
-        )
+        let kind = there.format_bare(value).to_lowercase();
+        let model = fit.to.subject().model.name;
+        McpSettingsMessage::NoSuchInput { pin: pin.label, kind, model }.into()
     })
 }

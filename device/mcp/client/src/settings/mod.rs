@@ -9,15 +9,15 @@ mod reference;
 pub(crate) mod rows;
 mod template;
 
-pub use check::{BRIDGE_WARNING, SHORTEST_AUTORUN_MS};
+pub use check::SHORTEST_AUTORUN_MS;
 pub use pins::{
     Behind, Conflict, ConflictKind, PinMode, SignalShape, change_mode, conflicts, function_text, modes,
     open_range,
 };
 pub use reference::{ReferenceForm, ReferenceRow, reference, reference_text};
 
+use crate::messages::McpSettingsMessage;
 use crate::model_of;
-use brushwork_link::Failure;
 use brushwork_link::exchange::ExchangeError;
 use brushwork_link::settings::{
     Argument, FamilySettings, Fit, Group, Lists, PlanContext, Planned, ReadReport, Row, SaveReport,
@@ -25,6 +25,7 @@ use brushwork_link::settings::{
 };
 use brushwork_link::unit::{FirmwareGeneration, UnitAddress};
 use brushwork_link::wire::Wire;
+use brushwork_link::{Failure, Message};
 use brushwork_mcp_wire::codes::ENCODER_PIN_NONE;
 use brushwork_mcp_wire::models::Family;
 use brushwork_mcp_wire::packet_serial::name::{ADDRESS, Name};
@@ -44,13 +45,13 @@ impl FamilySettings for McpSettings {
     }
 
     /// The pin behind an encoder input number, as far as we assume it.
-    fn note(&self, table: &SettingsTable, row: &Row, value: SettingValue) -> Option<String> {
+    fn note(&self, table: &SettingsTable, row: &Row, value: SettingValue) -> Option<Message> {
         let number = value.int().filter(|_| row.pattern == ENCODER_PIN)?;
         if number == ENCODER_PIN_NONE {
-            return Some("none, assumed".to_owned());
+            return Some(McpSettingsMessage::NoPin.into());
         }
         let index = usize::try_from(number).ok().filter(|index| *index < table.subject().pins)?;
-        Some(format!("counted from 0 in the pin list: {}, assumed", table.subject().pin_name(index)))
+        Some(McpSettingsMessage::PinInList { pin: table.subject().pin_name(index) }.into())
     }
 
     fn lists(&self, subject: &Subject) -> Option<Lists> {
@@ -70,7 +71,7 @@ impl FamilySettings for McpSettings {
         lookup(command).map_or("an unknown command", |command| command.title)
     }
 
-    fn arguments(&self, planned: &Planned<'_>) -> Result<Vec<Argument>, String> {
+    fn arguments(&self, planned: &Planned<'_>) -> Result<Vec<Argument>, Message> {
         plan::arguments(planned)
     }
 
@@ -78,7 +79,7 @@ impl FamilySettings for McpSettings {
         plan::stage(planned)
     }
 
-    fn warnings(&self, context: &PlanContext<'_>, steps: &[Step]) -> Vec<String> {
+    fn warnings(&self, context: &PlanContext<'_>, steps: &[Step]) -> Vec<Message> {
         plan::warnings(context, steps)
     }
 
@@ -86,7 +87,7 @@ impl FamilySettings for McpSettings {
         check::ORDERED_PAIRS
     }
 
-    fn dangers(&self, table: &SettingsTable, after: &SettingsImage, changes: &SettingsImage) -> Vec<String> {
+    fn dangers(&self, table: &SettingsTable, after: &SettingsImage, changes: &SettingsImage) -> Vec<Message> {
         check::dangers(table, after, changes)
     }
 
@@ -95,7 +96,7 @@ impl FamilySettings for McpSettings {
         table: &SettingsTable,
         after: &SettingsImage,
         changes: &SettingsImage,
-    ) -> Vec<String> {
+    ) -> Vec<Message> {
         plan::new_conflicts(table, after, changes)
     }
 
@@ -104,7 +105,7 @@ impl FamilySettings for McpSettings {
         step: &Step,
         address: UnitAddress,
         generation: FirmwareGeneration,
-    ) -> Result<Vec<u8>, String> {
+    ) -> Result<Vec<u8>, Message> {
         plan::step_bytes(step, (address, generation))
     }
 
@@ -157,7 +158,7 @@ impl FamilySettings for McpSettings {
         fit: &Fit<'_>,
         there: &Row,
         value: SettingValue,
-    ) -> Option<(SettingValue, String)> {
+    ) -> Option<(SettingValue, Message)> {
         fit::impossible_type(fit, there, value).map(|why| (SettingValue::Choice("none"), why))
     }
 }

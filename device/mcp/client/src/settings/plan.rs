@@ -1,7 +1,10 @@
 //! What is particular in a plan: when each command is sent, what its user should know, and how a step looks on the wire.
 
 use super::pins::{Conflict, conflicts};
+use crate::messages::McpSettingsMessage;
 use crate::{layout_of, packet_address};
+use brushwork_link::Message;
+use brushwork_link::messages::PlanMessage;
 use brushwork_link::settings::{
     Argument, Carrier, PlanContext, Planned, SettingValue, SettingsImage, SettingsTable, Source, Stage, Step,
 };
@@ -11,10 +14,10 @@ use brushwork_mcp_wire::packet_serial::name::{INDEX, Name};
 use brushwork_mcp_wire::packet_serial::{Request, describe_request, lookup, number};
 
 /// What the command of these rows takes: its fields in wire order, without keys that never change.
-pub fn arguments(planned: &Planned<'_>) -> Result<Vec<Argument>, String> {
+pub fn arguments(planned: &Planned<'_>) -> Result<Vec<Argument>, Message> {
     let layout = layout_of(planned.context.table.subject().generation);
     let form = lookup(planned.command).and_then(|command| command.form(layout));
-    let form = form.ok_or_else(|| format!("This firmware has no command {}.", planned.command))?;
+    let form = form.ok_or(McpSettingsMessage::NoCommand { command: planned.command })?;
     let argument = |name| match planned.index {
         Some(index) if name == INDEX::TEXT => Argument::Given(name, i64::from(index)),
         _ => Argument::Field(name),
@@ -52,31 +55,20 @@ pub fn stage(planned: &Planned<'_>) -> Stage {
 }
 
 /// What the steps themselves bring about besides their values.
-pub fn warnings(context: &PlanContext<'_>, steps: &[Step]) -> Vec<String> {
+pub fn warnings(context: &PlanContext<'_>, steps: &[Step]) -> Vec<Message> {
     let mut warnings = Vec::new();
     for step in steps {
         match (step.command, step.stage) {
-            (number::SET_ADDRESS_MIXED, Stage::Address) => warnings.push(
-                "The controller answers to its new address from then on; save it, or a power cycle \
-                 brings the old one back."
-                    .to_owned(),
-            ),
-            (number::SET_ADDRESS_MIXED, _) if address_is_unreadable(context) => warnings.push(format!(
-                "Mixing is written together with the address, which this firmware does not report: {} \
-                 is written, the address this link speaks to. Over USB a unit answers to every \
-                 address, so check it first.",
-                context
-                    .ram
-                    .get("unit.address")
-                    .and_then(SettingValue::int)
-                    .map_or_else(String::new, |byte| format!("0x{byte:02X}"))
-            )),
+            (number::SET_ADDRESS_MIXED, Stage::Address) => {
+                warnings.push(PlanMessage::NewAddress.into());
+            }
+            (number::SET_ADDRESS_MIXED, _) if address_is_unreadable(context) => {
+                let address = context.ram.get("unit.address").and_then(SettingValue::int);
+                let address = address.map_or_else(String::new, |byte| format!("0x{byte:02X}"));
+                warnings.push(McpSettingsMessage::AddressWithMixing { address }.into());
+            }
             (number::SET_STREAM, Stage::OwnPort) => warnings.extend(own_port_warnings(context)),
-            (number::SET_CONFIG, _) => warnings.push(
-                "The configuration word takes effect at once and can move the controller to another \
-                 address, baud rate or control mode: the link may be lost."
-                    .to_owned(),
-            ),
+            (number::SET_CONFIG, _) => warnings.push(McpSettingsMessage::ConfigurationWord.into()),
             _ => {}
         }
     }
@@ -88,7 +80,7 @@ fn address_is_unreadable(context: &PlanContext<'_>) -> bool {
     row.is_some_and(|row| matches!(row.carrier, Carrier::Wire { read: Source::LinkAddress, .. }))
 }
 
-fn own_port_warnings(context: &PlanContext<'_>) -> Vec<String> {
+fn own_port_warnings(context: &PlanContext<'_>) -> Vec<Message> {
     let Some(stream) = context.options.own_stream else { return Vec::new() };
     let change = |field: &str| {
         let key = format!("stream.{}.{field}", stream.key());
@@ -97,27 +89,19 @@ fn own_port_warnings(context: &PlanContext<'_>) -> Vec<String> {
     };
     let mut warnings = Vec::new();
     if let Some((to, _)) = change("type") {
-        warnings.push(format!(
-            "This program is connected through {stream}, which becomes \"{to}\": the link is lost then."
-        ));
+        warnings.push(McpSettingsMessage::OwnPortChanges { stream, to }.into());
     }
     if let (Some((to, _)), true) = (change("rate"), stream != Stream::Usb) {
-        warnings.push(format!(
-            "This program is connected through {stream}, which changes to {to}: connect again at that \
-             rate."
-        ));
+        warnings.push(McpSettingsMessage::OwnPortRate { stream, to }.into());
     }
     if let Some((_, SettingValue::Int(0))) = change("timeout") {
-        warnings.push(format!(
-            "{stream} has no time-out then: the motors would go on if this program died, so it cannot \
-             be armed."
-        ));
+        warnings.push(McpSettingsMessage::OwnPortTimeout { stream }.into());
     }
     warnings
 }
 
 /// The contradictions that some of the changes take part in.
-pub fn new_conflicts(table: &SettingsTable, after: &SettingsImage, changes: &SettingsImage) -> Vec<String> {
+pub fn new_conflicts(table: &SettingsTable, after: &SettingsImage, changes: &SettingsImage) -> Vec<Message> {
     let found = conflicts(table, &|key| after.get(key)).into_iter();
     // The type of a pin and whether it is digital are one choice for a person.
     let twin = |key: &str| key.strip_suffix(".type").map(|pin| format!("{pin}.digital"));
@@ -129,17 +113,17 @@ pub fn new_conflicts(table: &SettingsTable, after: &SettingsImage, changes: &Set
 }
 
 /// The bytes of a step.
-pub fn step_bytes(step: &Step, unit: (UnitAddress, FirmwareGeneration)) -> Result<Vec<u8>, String> {
-    request(step, unit.0)?.encode(layout_of(unit.1)).map_err(|error| error.to_string())
+pub fn step_bytes(step: &Step, unit: (UnitAddress, FirmwareGeneration)) -> Result<Vec<u8>, Message> {
+    request(step, unit.0)?.encode(layout_of(unit.1)).map_err(Message::error)
 }
 
 /// A step in words.
 pub fn step_words(step: &Step, unit: (UnitAddress, FirmwareGeneration)) -> String {
-    request(step, unit.0).map_or_else(|error| error, |request| describe_request(&request, layout_of(unit.1)))
+    request(step, unit.0)
+        .map_or_else(|why| why.to_string(), |request| describe_request(&request, layout_of(unit.1)))
 }
 
-fn request(step: &Step, address: UnitAddress) -> Result<Request, String> {
-    let address =
-        packet_address(address).ok_or_else(|| format!("{address} is no address of packet serial"))?;
+fn request(step: &Step, address: UnitAddress) -> Result<Request, McpSettingsMessage> {
+    let address = packet_address(address).ok_or(McpSettingsMessage::NoAddress { address })?;
     Ok(Request::new(address, step.command, &step.values()))
 }

@@ -49,7 +49,7 @@ impl Controller for MotionMind {
         stopping::confirm(self, line)
     }
 
-    fn other_drivers(&mut self, line: &mut Line<'_>) -> Result<Vec<String>, ExchangeError> {
+    fn other_drivers(&mut self, line: &mut Line<'_>) -> Result<Vec<brushwork_link::Message>, ExchangeError> {
         stopping::other_drivers(self, line)
     }
 

@@ -4,6 +4,8 @@ use crate::controller::driving;
 use crate::controller::registers::{mask, value_in};
 use crate::controller::stopping::{give_back, read_ramp, switch_on};
 use crate::controller::unit::MotionMind;
+use crate::messages::MotionMindDriverMessage;
+use brushwork_link::Message;
 use brushwork_link::device::controller::{ArmCheck, Line};
 use brushwork_link::exchange::ExchangeError;
 use brushwork_link::failure::Failure;
@@ -12,12 +14,6 @@ use std::time::Duration;
 
 /// A ramp that takes longer is worth knowing.
 const LONG_RAMP: Duration = Duration::from_millis(300);
-
-const NO_TIME_OUT: &str = "A Motion Mind has no serial time-out: if this program or the cable dies, the motor goes on with what it \
-                           was last told. Have a switch for the motor power at hand.";
-
-const SWITCHED_ON: &str = "The output of its loop was switched off (DISABLEPID in FUNCTION). It was switched on again, in RAM: the loop \
-                           holds the motor where it stands.";
 
 /// What became of a loop whose output was switched off.
 enum Hold {
@@ -40,7 +36,7 @@ pub fn check(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<ArmCheck, Exc
     if objections.is_empty() {
         match hold(unit, line, function)? {
             Hold::AsItWas => {}
-            Hold::SwitchedOn => warnings.push(SWITCHED_ON.to_owned()),
+            Hold::SwitchedOn => warnings.push(MotionMindDriverMessage::LoopSwitchedOn.into()),
             Hold::Moves => objections.push((
                 "its loop is switched off (DISABLEPID in FUNCTION), and the motor does not stand still when it is switched on"
                     .to_owned(),
@@ -50,7 +46,7 @@ pub fn check(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<ArmCheck, Exc
     }
     if objections.is_empty() {
         give_back(unit, line, number::VELOCITYLIMIT)?;
-        warnings.push(NO_TIME_OUT.to_owned());
+        warnings.push(MotionMindDriverMessage::NoTimeout.into());
         warnings.extend(ramp_warning(unit, line)?);
     }
     let reasons = objections
@@ -106,15 +102,11 @@ fn hold(unit: &mut MotionMind, line: &mut Line<'_>, function: i64) -> Result<Hol
     Ok(if switch_on(unit, line, function & !off)? { Hold::SwitchedOn } else { Hold::Moves })
 }
 
-fn ramp_warning(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<Option<String>, ExchangeError> {
+fn ramp_warning(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<Option<Message>, ExchangeError> {
     if unit.mode() != Mode::Serial {
         return Ok(None);
     }
     read_ramp(unit, line)?;
-    Ok(unit.ramp.time_to_zero().filter(|time| *time > LONG_RAMP).map(|time| {
-        format!(
-            "Its ramp takes {:.1} s from full drive to 0 (VELOCITYLIMIT, TIMER). Stop takes the ramp away for as long as it needs.",
-            time.as_secs_f64()
-        )
-    }))
+    let long = unit.ramp.time_to_zero().filter(|time| *time > LONG_RAMP);
+    Ok(long.map(|time| MotionMindDriverMessage::LongRamp { seconds: time.as_secs_f64() }.into()))
 }

@@ -7,6 +7,7 @@ use crate::controller::speaker::{GAP, Speaker};
 use crate::controller::stopping;
 use crate::controller::unit::MotionMind;
 use crate::family::{MOTION_MIND, NAME, firmware_of};
+use crate::messages::MotionMindIdentityMessage;
 use brushwork_link::device::StopBytes;
 use brushwork_link::device::controller::{Controller, DiscoverError, Line, Search};
 use brushwork_link::device::{Addresses, DeviceOptions};
@@ -220,21 +221,14 @@ fn identify(line: &mut Line<'_>, mut speaker: Speaker, simulated: bool) -> Resul
     speaker.returns = Some(returns_of(value(number::FUNCTION)));
     let mut notes = Vec::new();
     if mode.is_none() {
-        notes.push(format!(
-            "It says that its mode is {}, which the manual does not have.",
-            value(number::MODE)
-        ));
+        notes.push(MotionMindIdentityMessage::UnknownMode { number: value(number::MODE) }.into());
     }
     let closes_a_loop = matches!(mode, Some(Mode::SerialPid | Mode::AnalogPid));
     if closes_a_loop && value(number::FUNCTION) & i64::from(function::DISABLEPID) != 0 {
-        notes.push(
-            "The output of its loop is switched off (DISABLEPID in FUNCTION); a stop or a run that was cut short may have left it so. \
-             Arming, or `drive`, switches it on again: the motor is then held where it stands."
-                .to_owned(),
-        );
+        notes.push(MotionMindIdentityMessage::LoopIsOff.into());
     }
     if speaker.is_loose {
-        notes.push("It answers the read of all registers and no other: a simulator, whose values are shown as they come.".to_owned());
+        notes.push(MotionMindIdentityMessage::Loose.into());
     }
     let identity = Identity {
         address: speaker.address.get(),

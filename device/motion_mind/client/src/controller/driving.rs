@@ -1,5 +1,6 @@
 //! What a drive is in commands of a Motion Mind: one for each mode that serial commands can move a motor in.
 
+use brushwork_link::Message;
 use brushwork_link::device::{Drive, DriveCommand};
 use brushwork_link::exchange::ExchangeError;
 use brushwork_motion_mind_wire::{Address, Command, Mode, Protocol, encode_frame, encode_line};
@@ -60,8 +61,8 @@ pub fn taken(mode: Mode) -> &'static str {
 
 /// Why a drive cannot be in a mode; `None` if it can.
 #[must_use]
-pub fn objection(mode: Mode, drive: &Drive) -> Option<String> {
-    command(mode, drive).err().map(|error| error.to_string())
+pub fn objection(mode: Mode, drive: &Drive) -> Option<Message> {
+    command(mode, drive).err().map(Message::error)
 }
 
 /// The bytes of a drive, as they would be sent.

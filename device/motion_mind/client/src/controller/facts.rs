@@ -4,6 +4,7 @@ use super::channels::CHANNELS;
 use super::driving::{objection, preview};
 use super::indicators::status_row;
 use super::traffic::describe_sent;
+use brushwork_link::Message;
 use brushwork_link::device::{
     Capabilities, Channel, Described, Drive, Identity, StatusPlace, StatusReport, UnitFacts,
 };
@@ -67,7 +68,7 @@ impl UnitFacts for MotionMindFacts {
         describe_sent(bytes, self.protocol)
     }
 
-    fn objection(&self, drive: &Drive) -> Option<String> {
+    fn objection(&self, drive: &Drive) -> Option<Message> {
         objection(self.mode, drive)
     }
 

@@ -9,6 +9,8 @@ use crate::controller::borrowed::{Borrowed, Ramp, STEEPEST};
 use crate::controller::registers::{mask, value_in};
 use crate::controller::speaker::{GAP, Speaker};
 use crate::controller::unit::MotionMind;
+use crate::messages::MotionMindDriverMessage;
+use brushwork_link::Message;
 use brushwork_link::device::controller::Line;
 use brushwork_link::device::{StopBytes, UnitStop};
 use brushwork_link::exchange::ExchangeError;
@@ -100,11 +102,11 @@ pub fn confirm(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<UnitStop, E
         Ok(Ended::SwitchedOff) => {
             stop.confirmed = true;
             stop.loop_left_off = true;
-            stop.still_driven_by.push(SWITCHED_OFF.to_owned());
+            stop.still_driven_by.push(MotionMindDriverMessage::LoopLeftOff.into());
         }
         Ok(Ended::Calmed) => {
             stop.confirmed = true;
-            stop.still_driven_by.push(CALMED.to_owned());
+            stop.still_driven_by.push(MotionMindDriverMessage::LoopCalmed.into());
         }
         Ok(Ended::StillDriven) => {
             stop.failures.push(Failure::new("stop the motor", on, "its drive is not 0", CUT_POWER));
@@ -116,13 +118,6 @@ pub fn confirm(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<UnitStop, E
     }
     Ok(stop)
 }
-
-const SWITCHED_OFF: &str = "Its loop did not hold the motor still, so its output was left switched off (DISABLEPID in FUNCTION, in RAM): \
-                            the motor stands, but nothing holds it. The next Arm or `drive` switches the loop on again, and so does \
-                            a reset of the unit. A loop that shakes its motor needs other gains: lower PTERM and ITERM, or tune it.";
-
-const CALMED: &str = "Its loop did not bring the motor to a stand, so its output was switched off until the motor stood \
-                      (DISABLEPID in FUNCTION). It is on again.";
 
 enum Ended {
     Stands,
@@ -310,24 +305,22 @@ pub fn give_back(unit: &mut MotionMind, line: &mut Line<'_>, register: u8) -> Re
 }
 
 /// What moves the motor without this program: the inputs of its mode, or the loop that holds it.
-pub fn other_drivers(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<Vec<String>, ExchangeError> {
+pub fn other_drivers(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<Vec<Message>, ExchangeError> {
     let function = read(unit, line, number::FUNCTION)?;
     let is_set = |bit: u16| function & i64::from(bit) != 0;
     let is_off = is_set(function::DISABLEPID);
     let reported = match unit.mode() {
         Mode::RadioControl if is_set(function::RCPOS) && is_off => None,
-        Mode::RadioControl => Some("The R/C input drives the motor (mode 0)."),
-        Mode::Analog => Some("The analog input drives the motor (mode 1)."),
-        Mode::Buttons => Some("The buttons drive the motor (mode 2)."),
+        Mode::RadioControl => Some(MotionMindDriverMessage::RadioInput),
+        Mode::Analog => Some(MotionMindDriverMessage::AnalogInput),
+        Mode::Buttons => Some(MotionMindDriverMessage::Buttons),
         Mode::AnalogPid if !is_off && !is_set(function::ADSERIAL) => {
-            Some("The analog input moves the motor (mode 5, ADSERIAL is off).")
+            Some(MotionMindDriverMessage::AnalogSetpoint)
         }
-        Mode::SerialPid | Mode::AnalogPid if !is_off => {
-            Some("Its loop holds the motor where it stands, and turns it back if it is pushed.")
-        }
+        Mode::SerialPid | Mode::AnalogPid if !is_off => Some(MotionMindDriverMessage::LoopHolds),
         Mode::Serial | Mode::SerialPid | Mode::AnalogPid | Mode::FactoryRestore | Mode::FactoryTest => None,
     };
-    Ok(reported.map(str::to_owned).into_iter().collect())
+    Ok(reported.map(Message::from).into_iter().collect())
 }
 
 /// A lost link and what breaks in are not a matter of one unit.

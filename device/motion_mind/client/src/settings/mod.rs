@@ -4,7 +4,6 @@ mod memory;
 mod rows;
 mod steps;
 
-use brushwork_link::Failure;
 use brushwork_link::exchange::ExchangeError;
 use brushwork_link::settings::{
     Argument, FamilySettings, PlanContext, Planned, ReadReport, Row, SaveReport, SettingsImage, Stage, Step,
@@ -12,6 +11,7 @@ use brushwork_link::settings::{
 };
 use brushwork_link::unit::{FirmwareGeneration, UnitAddress};
 use brushwork_link::wire::Wire;
+use brushwork_link::{Failure, Message};
 use brushwork_motion_mind_wire::{Register, numbers, register, register_number};
 use brushwork_values::Values;
 
@@ -36,7 +36,7 @@ impl FamilySettings for MotionMindSettings {
         self.read_title(command).to_owned()
     }
 
-    fn arguments(&self, planned: &Planned<'_>) -> Result<Vec<Argument>, String> {
+    fn arguments(&self, planned: &Planned<'_>) -> Result<Vec<Argument>, Message> {
         let name = planned.changed.first().and_then(|row| row.sink()).map_or("", |sink| sink.place.field);
         let number = planned.index.unwrap_or_default();
         Ok(vec![Argument::Given(steps::INDEX, i64::from(number)), Argument::Field(name)])
@@ -50,7 +50,7 @@ impl FamilySettings for MotionMindSettings {
         steps::weaken_first(steps, ram);
     }
 
-    fn warnings(&self, _context: &PlanContext<'_>, steps: &[Step]) -> Vec<String> {
+    fn warnings(&self, _context: &PlanContext<'_>, steps: &[Step]) -> Vec<Message> {
         steps::warnings(steps)
     }
 
@@ -59,7 +59,7 @@ impl FamilySettings for MotionMindSettings {
         step: &Step,
         address: UnitAddress,
         _generation: FirmwareGeneration,
-    ) -> Result<Vec<u8>, String> {
+    ) -> Result<Vec<u8>, Message> {
         steps::step_bytes(step, address)
     }
 

@@ -1,5 +1,8 @@
 //! Writes of registers as steps of a plan.
 
+use crate::messages::MotionMindSettingsMessage;
+use brushwork_link::Message;
+use brushwork_link::messages::PlanMessage;
 use brushwork_motion_mind_wire::register_number as number;
 use brushwork_motion_mind_wire::{Address, Command, describe_command, encode_frame};
 
@@ -46,38 +49,33 @@ pub fn step_title(step: &Step) -> String {
 }
 
 /// The bytes of a step in the binary protocol.
-pub fn step_bytes(step: &Step, address: UnitAddress) -> Result<Vec<u8>, String> {
+pub fn step_bytes(step: &Step, address: UnitAddress) -> Result<Vec<u8>, Message> {
     let (address, command) = parts(step, address)?;
-    encode_frame(address, &command).map_err(|error| error.to_string())
+    encode_frame(address, &command).map_err(Message::error)
 }
 
 /// A step in words.
 pub fn step_words(step: &Step, address: UnitAddress) -> String {
-    parts(step, address).map_or_else(|error| error, |(address, command)| describe_command(address, &command))
+    parts(step, address)
+        .map_or_else(|why| why.to_string(), |(address, command)| describe_command(address, &command))
 }
 
-fn parts(step: &Step, address: UnitAddress) -> Result<(Address, Command), String> {
-    let address = Address::unit(address.get()).ok_or_else(|| format!("{address} is no Motion Mind's"))?;
+fn parts(step: &Step, address: UnitAddress) -> Result<(Address, Command), MotionMindSettingsMessage> {
+    let address = Address::unit(address.get()).ok_or(MotionMindSettingsMessage::NoAddress { address })?;
     let values: Vec<i64> = step.arguments.iter().map(|(_, value)| *value).collect();
     let command = Command::from_parts(step.command, &values);
-    command.map(|command| (address, command)).ok_or_else(|| "the values do not fit the command".to_owned())
+    command.map(|command| (address, command)).ok_or(MotionMindSettingsMessage::ValuesDoNotFit)
 }
 
 /// What the user should know of the steps besides their values.
-pub fn warnings(steps: &[Step]) -> Vec<String> {
+pub fn warnings(steps: &[Step]) -> Vec<Message> {
     let mut warnings = Vec::new();
     if steps.iter().any(|step| step.stage == Stage::Address) {
-        warnings.push(
-            "The controller answers to its new address from then on; save it, or a power cycle brings the old one back."
-                .to_owned(),
-        );
+        warnings.push(PlanMessage::NewAddress.into());
     }
     let baud = |key: &str| key == "function2.baud38400" || key == "function2.baud115200";
     if steps.iter().flat_map(|step| &step.keys).any(|key| baud(key)) {
-        warnings.push(
-            "The baud rate changes at the next power-up, and only if it is saved: connect again at the new rate then."
-                .to_owned(),
-        );
+        warnings.push(MotionMindSettingsMessage::BaudRate.into());
     }
     warnings
 }

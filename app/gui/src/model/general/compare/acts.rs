@@ -1,5 +1,6 @@
 //! What General Settings does to set two copies side by side.
 
+use brushwork_link::Message;
 use brushwork_link::settings::{CopiedMotor, SettingsImage, copy_motor, diff};
 
 use super::{Comparison, Fitted, Side, Take};
@@ -53,7 +54,7 @@ impl GeneralView<'_> {
             return Err("The backup is not there any more.".to_owned());
         };
         let opened = backup.open().map_err(|error| error.to_string())?;
-        let corrected: Vec<String> = opened.corrected.iter().map(ToString::to_string).collect();
+        let corrected: Vec<Message> = opened.corrected.iter().cloned().map(Message::error).collect();
         let upgrades = opened.upgraded.len();
         let (profile, mut changes) = fitted(opened, unit.table());
         changes.splice(upgrades..upgrades, corrected);

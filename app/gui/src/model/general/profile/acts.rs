@@ -57,7 +57,7 @@ impl GeneralView<'_> {
     /// A profile that fits is open now; one that does not is shown with what has to be changed of it.
     fn take_profile(&mut self, name: String, read: OpenedProfile) {
         let Some(unit) = self.unit() else { return };
-        let corrected = read.corrected.iter().map(ToString::to_string).collect();
+        let corrected = read.corrected.clone();
         let (profile, changes) = fitted(read, unit.table());
         let opened = Opened { name, profile, corrected };
         self.profiles.reported = Reported::Nothing;

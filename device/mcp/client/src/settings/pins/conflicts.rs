@@ -4,10 +4,12 @@ use brushwork_mcp_wire::codes::{ENCODER_PIN_NONE, STREAMS};
 use brushwork_mcp_wire::models::{Family, Pin};
 use serde::Serialize;
 
+use crate::messages::ConflictMessage;
 use crate::model_of;
 use crate::settings::pins::mode::PinMode;
 use crate::settings::pins::shape::SignalShape;
 use crate::settings::pins::values::{Lookup, PinValues, choice};
+use brushwork_link::Message;
 use brushwork_link::settings::SettingValue;
 use brushwork_link::settings::SettingsTable;
 
@@ -19,7 +21,7 @@ pub struct Conflict {
     /// The rows that contradict each other; the first is the one to look at.
     pub keys: Vec<String>,
     /// What is wrong and its remedy.
-    pub sentence: String,
+    pub sentence: Message,
 }
 
 /// The kinds of contradiction that are looked for.
@@ -82,13 +84,13 @@ const BUS_RATES: [(&str, &str, &[i64]); 2] = [
     ("i2c.rate", "I2C", &[100_000, 400_000, 1_000_000]),
 ];
 
-fn no_such_rate(get: Lookup<'_>, key: &str, name: &str, rates: &[i64]) -> Option<Conflict> {
+fn no_such_rate(get: Lookup<'_>, key: &str, bus: &'static str, rates: &[i64]) -> Option<Conflict> {
     let Some(SettingValue::Int(rate)) = get(key) else { return None };
     let listed: Vec<String> = rates.iter().map(ToString::to_string).collect();
     (!rates.contains(&rate)).then(|| Conflict {
         kind: ConflictKind::NoSuchRate,
         keys: vec![key.to_owned()],
-        sentence: format!("{name} has no rate of {rate} bit/s. It has {}.", listed.join(", ")),
+        sentence: ConflictMessage::NoSuchRate { bus, rate, listed: listed.join(", ") }.into(),
     })
 }
 
@@ -115,8 +117,14 @@ impl<'a> Judged<'a> {
         })
     }
 
-    fn conflict(&self, kind: ConflictKind, fields: &[&str], sentence: String) -> Conflict {
-        Conflict { kind, keys: fields.iter().map(|field| self.values.key(field)).collect(), sentence }
+    fn conflict(&self, kind: ConflictKind, fields: &[&str], sentence: ConflictMessage) -> Conflict {
+        let keys = fields.iter().map(|field| self.values.key(field)).collect();
+        Conflict { kind, keys, sentence: sentence.into() }
+    }
+
+    /// The pin and what it is set to, for sentences.
+    fn pin_and_mode(&self) -> (String, String) {
+        (self.name.clone(), self.mode.label().to_lowercase())
     }
 
     fn is_used(&self) -> bool {
@@ -134,11 +142,8 @@ impl<'a> Judged<'a> {
     fn two_functions(&self) -> Option<Conflict> {
         let is_both = self.values.is_on("digital") && !matches!(self.mode, PinMode::Digital | PinMode::None);
         is_both.then(|| {
-            let sentence = format!(
-                "{} is set as a digital input and as {} at once. Choose one mode for it.",
-                self.name,
-                self.mode.label().to_lowercase()
-            );
+            let (pin, mode) = self.pin_and_mode();
+            let sentence = ConflictMessage::TwoFunctions { pin, mode };
             self.conflict(ConflictKind::TwoFunctions, &["type", "digital"], sentence)
         })
     }
@@ -146,22 +151,16 @@ impl<'a> Judged<'a> {
     fn no_such_function(&self) -> Option<Conflict> {
         let label = self.label?;
         (!self.mode.is_on(label)).then(|| {
-            let sentence = format!(
-                "{} is set to {}, which this pin cannot measure. Choose one of the modes in its name.",
-                self.name,
-                self.mode.label().to_lowercase()
-            );
+            let (pin, mode) = self.pin_and_mode();
+            let sentence = ConflictMessage::NoSuchFunction { pin, mode };
             self.conflict(ConflictKind::NoSuchFunction, &["type"], sentence)
         })
     }
 
     fn held_by_port(&self) -> Option<Conflict> {
         let (port, key) = self.holder().filter(|_| self.is_used())?;
-        let sentence = format!(
-            "{} is set to {}, but {port} is in use and holds the pin. Disable {port}, or set the pin to None.",
-            self.name,
-            self.mode.label().to_lowercase()
-        );
+        let (pin, mode) = self.pin_and_mode();
+        let sentence = ConflictMessage::PortHoldsPin { pin, mode, port };
         let mut conflict = self.conflict(ConflictKind::PortHoldsPin, &["type"], sentence);
         conflict.keys.push(key);
         Some(conflict)
@@ -174,11 +173,8 @@ impl<'a> Judged<'a> {
             channel.is_some_and(|(number, other)| number == encoder && other != phase)
         };
         let other = pins.iter().find(is_other).filter(|other| other.mode != PinMode::Encoder)?;
-        let sentence = format!(
-            "{} is one line of encoder {encoder}, but {} is not set to encoder. Set both or none: the lines of an \
-             encoder count in pairs.",
-            self.name, other.name
-        );
+        let (pin, other_pin) = (self.name.clone(), other.name.clone());
+        let sentence = ConflictMessage::HalfAnEncoder { pin, encoder, other: other_pin };
         let mut conflict = self.conflict(ConflictKind::HalfAnEncoder, &["type"], sentence);
         conflict.keys.push(other.values.key("type"));
         Some(conflict)
@@ -187,49 +183,42 @@ impl<'a> Judged<'a> {
     fn never_fires(&self, end: &str) -> Option<Conflict> {
         let action = self.values.choice(end).filter(|action| *action != "none")?;
         let why = self.never_reached(end).or_else(|| self.nothing_to_act_on(action))?;
-        let what = if end == "min_action" { "minimum" } else { "maximum" };
-        let sentence = format!("The {what} action of {} never acts: {why}", self.name);
+        let (pin, why) = (self.name.clone(), why.into());
+        let sentence = match end {
+            "min_action" => ConflictMessage::MinimumNeverActs { pin, why },
+            _ => ConflictMessage::MaximumNeverActs { pin, why },
+        };
         Some(self.conflict(ConflictKind::ActionNeverFires, &[end], sentence))
     }
 
     /// Why the input never gets to the end that triggers the action.
-    fn never_reached(&self, end: &str) -> Option<String> {
+    fn never_reached(&self, end: &str) -> Option<ConflictMessage> {
         if !self.is_used() {
-            return Some("the pin measures nothing. Choose its mode.".to_owned());
+            return Some(ConflictMessage::MeasuresNothing);
         }
         if let Some((port, _)) = self.holder() {
-            return Some(format!("{port} is in use and holds the pin. Disable {port}."));
+            return Some(ConflictMessage::Held { port });
         }
         let (lowest, highest) = self.mode.reach()?;
         let at = |value: f64| format!("{value} {}", self.mode.unit()).trim_end().to_owned();
         match (end, self.values.number(end.trim_end_matches("_action"))?) {
-            ("min_action", min) if min < lowest => {
-                Some(format!("the input never goes down to {}. Raise the minimum.", at(min)))
-            }
-            ("max_action", max) if max > highest => {
-                Some(format!("the input never goes up to {}. Lower the maximum.", at(max)))
-            }
+            ("min_action", min) if min < lowest => Some(ConflictMessage::NeverDown { to: at(min) }),
+            ("max_action", max) if max > highest => Some(ConflictMessage::NeverUp { to: at(max) }),
             _ => None,
         }
     }
 
     /// Why the action changes nothing even when it is triggered.
-    fn nothing_to_act_on(&self, action: &str) -> Option<String> {
+    fn nothing_to_act_on(&self, action: &str) -> Option<ConflictMessage> {
         let has_no_encoder = |motor: usize| {
             let number = (self.get)(&format!("motor{motor}.encoder.pin"));
             number == Some(SettingValue::Int(ENCODER_PIN_NONE))
         };
         let is_bridged = (self.get)("unit.bridge_channels") == Some(SettingValue::Bool(true));
         match action {
-            "m1_load_home" if has_no_encoder(1) => {
-                Some("motor 1 has no encoder whose count it could set.".to_owned())
-            }
-            "m2_load_home" if has_no_encoder(2) => {
-                Some("motor 2 has no encoder whose count it could set.".to_owned())
-            }
-            action if is_bridged && action.starts_with("m2_") => {
-                Some("the channels are bridged, so there is no motor 2.".to_owned())
-            }
+            "m1_load_home" if has_no_encoder(1) => Some(ConflictMessage::NoEncoder { motor: 1 }),
+            "m2_load_home" if has_no_encoder(2) => Some(ConflictMessage::NoEncoder { motor: 2 }),
+            action if is_bridged && action.starts_with("m2_") => Some(ConflictMessage::NoSecondMotor),
             _ => None,
         }
     }
@@ -240,16 +229,16 @@ impl<'a> Judged<'a> {
         if !self.is_used() {
             return None;
         }
-        let (fields, why): (&[&str], String) = if min >= max {
-            (&["min", "max"], format!("its minimum {min} is not below its maximum {max}"))
+        let (fields, why): (&[&str], _) = if min >= max {
+            (&["min", "max"], ConflictMessage::MinimumNotBelow { min, max })
         } else if !(min..=max).contains(&center) {
-            (&["center", "min", "max"], format!("its center {center} is not between {min} and {max}"))
+            (&["center", "min", "max"], ConflictMessage::CenterOutside { center, min, max })
         } else if deadband >= center - min && deadband >= max - center {
-            (&["deadband"], format!("its deadband {deadband} covers the whole range"))
+            (&["deadband"], ConflictMessage::DeadbandCoversAll { deadband })
         } else {
             return None;
         };
-        let sentence = format!("{} gives no usable command: {why}.", self.name);
+        let sentence = ConflictMessage::NoCommand { pin: self.name.clone(), why: why.into() };
         Some(self.conflict(ConflictKind::NoRange, fields, sentence))
     }
 
@@ -258,11 +247,7 @@ impl<'a> Judged<'a> {
         let levels = ["priority.1", "priority.2", "priority.3"].map(|level| choice(self.get, level));
         let kind = self.mode.priority()?;
         (levels.iter().all(Option::is_some) && !levels.contains(&Some(kind))).then(|| {
-            let sentence = format!(
-                "{} is set to control a motor, but {kind} inputs are at no priority level, so it never does. Put \
-                 {kind} at a level, or set the pin to control none.",
-                self.name
-            );
+            let sentence = ConflictMessage::NeverCommands { pin: self.name.clone(), kind };
             let mut conflict = self.conflict(ConflictKind::NeverCommands, &["target"], sentence);
             conflict.keys.push("priority.3".to_owned());
             conflict
@@ -280,16 +265,14 @@ fn encoder_unread(get: Lookup<'_>, pins: &[Judged<'_>], motor: usize) -> Option<
     let key = format!("motor{motor}.encoder.pin");
     let Some(SettingValue::Int(number)) = get(&key) else { return None };
     let pin = pins.iter().find(|pin| pin.number as i64 == number + 1)?;
-    let why = match pin.holder() {
-        _ if pin.mode == PinMode::None => "which measures nothing. Set that pin's mode".to_owned(),
-        _ if pin.mode == PinMode::Digital => "which is a digital input. Set that pin's mode".to_owned(),
-        Some((port, _)) => format!("which {port} holds. Disable {port}"),
+    let (name, keys) = (pin.name.clone(), vec![key, pin.values.key("type")]);
+    let sentence = match pin.holder() {
+        _ if pin.mode == PinMode::None => ConflictMessage::EncoderMeasuresNothing { motor, pin: name },
+        _ if pin.mode == PinMode::Digital => ConflictMessage::EncoderIsDigital { motor, pin: name },
+        Some((port, _)) => ConflictMessage::EncoderHeld { motor, pin: name, port },
         None => return None,
     };
-    let sentence =
-        format!("Motor {motor} takes its encoder from {}, {why}, or choose another input.", pin.name);
-    let keys = vec![key, pin.values.key("type")];
-    Some(Conflict { kind: ConflictKind::EncoderUnread, keys, sentence })
+    Some(Conflict { kind: ConflictKind::EncoderUnread, keys, sentence: sentence.into() })
 }
 
 fn two_commanders(pins: &[Judged<'_>], motor: usize) -> Vec<Conflict> {
@@ -300,11 +283,8 @@ fn two_commanders(pins: &[Judged<'_>], motor: usize) -> Vec<Conflict> {
     let reported = |kind: &'static str| {
         let commanders = of_kind(kind);
         let [first, .., last] = commanders.as_slice() else { return None };
-        let sentence = format!(
-            "{} and {} both control motor {motor} as {kind} inputs, and only one of them can. Let the other control \
-             none.",
-            first.name, last.name
-        );
+        let (first, last) = (first.name.clone(), last.name.clone());
+        let sentence = ConflictMessage::TwoCommanders { first, last, motor, kind }.into();
         let keys = commanders.iter().rev().map(|pin| pin.values.key("target")).collect();
         Some(Conflict { kind: ConflictKind::TwoCommanders, keys, sentence })
     };

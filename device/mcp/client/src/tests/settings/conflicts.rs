@@ -27,7 +27,7 @@ fn found(changes: &[(&str, SettingValue)]) -> Vec<(ConflictKind, String, String)
     for conflict in &all {
         assert!(conflict.keys.iter().all(|key| table.row(key).is_some()), "{conflict:?}");
     }
-    all.into_iter().map(|one| (one.kind, one.keys[0].clone(), one.sentence)).collect()
+    all.into_iter().map(|one| (one.kind, one.keys[0].clone(), one.sentence.to_string())).collect()
 }
 
 /// The only conflict of these changes.

@@ -59,7 +59,7 @@ fn a_reload_that_times_out_is_no_failed_save() {
     unit.silent.insert(number::RELOAD_SETTINGS);
     let report = saved(&mut unit, &table);
     assert_eq!(report.verdict, SaveVerdict::Acknowledged);
-    assert!(report.sentence().contains("that happens after good saves too"));
+    assert!(report.sentence().to_string().contains("that happens after good saves too"));
     assert_eq!(report.eeprom, None, "what was not read back is not known");
     assert_eq!(unit.count(number::RELOAD_SETTINGS), 3);
 }
@@ -93,7 +93,10 @@ fn without_an_acknowledgement_nothing_is_claimed_and_nothing_is_loaded() {
         let report = saved(&mut unit, &table);
         assert_eq!(report.verdict, SaveVerdict::Unknown, "{mishap:?}");
         assert!(
-            report.sentence().starts_with("It is not known whether the settings are saved. Could not save")
+            report
+                .sentence()
+                .to_string()
+                .starts_with("It is not known whether the settings are saved. Could not save")
         );
         // Loading EEPROM now could throw away what was to be saved.
         assert_eq!(unit.count(number::RELOAD_SETTINGS), 0);
@@ -108,7 +111,7 @@ fn a_unit_that_does_not_come_back_is_told() {
     unit.restart_time = Some(Duration::from_secs(3600));
     let report = saved(&mut unit, &table);
     assert_eq!(report.verdict, SaveVerdict::Unknown);
-    assert!(report.sentence().contains("no answer for 6 s afterwards"), "{}", report.sentence());
+    assert!(report.sentence().to_string().contains("no answer for 6 s afterwards"), "{}", report.sentence());
 }
 
 #[test]

@@ -31,7 +31,7 @@ fn plan_of(table: &SettingsTable, changes: &[(&str, &str)], options: WriteOption
 fn refused(table: &SettingsTable, changes: &[(&str, &str)]) -> Vec<String> {
     let ram = table.default_image();
     let refusals: Vec<Refusal> = plan(table, &ram, &image(table, changes), REAL).expect_err("it is refused");
-    refusals.into_iter().map(|refusal| refusal.sentence).collect()
+    refusals.into_iter().map(|refusal| refusal.sentence.to_string()).collect()
 }
 
 fn hex(bytes: &[u8]) -> String {
@@ -243,7 +243,7 @@ fn bits_of_a_word_leave_its_other_bits_alone() {
     let plan = plan(&table, &ram, &changes, REAL).expect("it can be written");
     assert_eq!(plan.steps[0].arguments, [("config", 0x0A02)]);
     assert_eq!(plan.steps[0].stage, Stage::OwnPort);
-    assert!(plan.warnings[0].contains("the link may be lost"), "{:?}", plan.warnings);
+    assert!(plan.warnings[0].to_string().contains("the link may be lost"), "{:?}", plan.warnings);
 }
 
 #[test]
@@ -339,7 +339,7 @@ fn what_keeps_this_program_from_arming_or_changes_what_duty_means_is_told() {
 fn mixing_alone_says_which_address_goes_with_it_where_none_is_reported() {
     let plan = plan_of(&table("mcp266", ONE), &[("unit.mixing", "yes")], REAL);
     assert!(
-        plan.warnings[0].contains("0x80 is written, the address this link speaks to"),
+        plan.warnings[0].to_string().contains("0x80 is written, the address this link speaks to"),
         "{:?}",
         plan.warnings
     );
@@ -397,5 +397,5 @@ fn bridging_the_channels_comes_with_its_wiring_warning() {
     let options = WriteOptions { own_stream: Some(Stream::Usb), simulated: true, as_read: false };
     let warnings =
         |on: &str| plan_of(&table("mcp266", ONE), &[("unit.bridge_channels", on)], options).warnings;
-    assert!(warnings("yes")[0].contains("only after this is written and saved to EEPROM"));
+    assert!(warnings("yes")[0].to_string().contains("only after this is written and saved to EEPROM"));
 }

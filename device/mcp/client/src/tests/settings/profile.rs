@@ -299,7 +299,10 @@ fn what_no_unit_can_hold_is_refused_whoever_says_so() {
         let wanted = [(key.to_owned(), value)].into_iter().collect();
         let options = WriteOptions { as_read: true, ..WriteOptions::default() };
         let refusals = brushwork_link::settings::plan(&here, &ram, &wanted, options).expect_err(key);
-        assert!(refusals.iter().any(|refusal| refusal.sentence.contains(expected)), "{key}: {refusals:?}");
+        assert!(
+            refusals.iter().any(|refusal| refusal.sentence.to_string().contains(expected)),
+            "{key}: {refusals:?}"
+        );
     }
 }
 
@@ -349,7 +352,11 @@ fn what_a_real_controller_cannot_be_told_is_left_out_with_the_reason() {
     let real = stored.changes_for(&here, &ram, false).expect("it fits");
     assert_eq!(real.wanted.iter().map(|(key, _)| key).collect::<Vec<_>>(), ["unit.mixing"]);
     assert_eq!(real.left_out.len(), 1);
-    assert!(real.left_out[0].starts_with("Bridge channels: yes is not written. No packet serial command"));
+    assert!(
+        real.left_out[0]
+            .to_string()
+            .starts_with("Bridge channels: yes is not written. No packet serial command")
+    );
     let simulated = stored.changes_for(&here, &ram, true).expect("it fits");
     assert_eq!((simulated.wanted.len(), simulated.left_out.len()), (2, 0));
 }

@@ -1,0 +1,10 @@
+//! What the command line says beside what its data says, in its words.
+
+use brushwork_values::messages;
+
+messages! {
+    /// What to know before settings are written.
+    pub enum CliSettingsMessage {
+        StreamUnknown "It is not known which of the controller's streams this port is wired to; if it is one that changes, the link may be lost. A target such as /dev/ttyUSB0,stream=ttl1 says it.",
+    }
+}

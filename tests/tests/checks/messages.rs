@@ -1,0 +1,73 @@
+//! Keeps what is said to people in tables: each message known by one key, each sentence written once.
+
+use brushwork_tests::workspace;
+use std::collections::BTreeMap;
+
+/// One member of a `messages!` table.
+struct Said {
+    key: String,
+    words: String,
+}
+
+/// Every message of the program, by reading the tables in the sources.
+fn said() -> Vec<Said> {
+    let files = workspace::rust_files().into_iter().filter(|path| path.ends_with("/messages.rs"));
+    files.filter(|path| path.contains("/src/")).flat_map(|path| of_file(&workspace::read(&path))).collect()
+}
+
+fn of_file(source: &str) -> Vec<Said> {
+    let mut found = Vec::new();
+    let mut theme = "";
+    for line in source.lines() {
+        if let Some(name) = line.strip_prefix("    pub enum ") {
+            theme = name.trim_end_matches(" {");
+        } else if let Some((head, words)) = line.strip_suffix("\",").and_then(|line| line.split_once(" \"")) {
+            let member = head.split_whitespace().next().unwrap_or_default();
+            found.push(Said { key: format!("{theme}.{member}"), words: words.to_owned() });
+        }
+    }
+    found
+}
+
+/// The keys that share what `of` tells, where more than one does.
+fn shared(said: &[Said], of: impl Fn(&Said) -> &str) -> Vec<Vec<&str>> {
+    let mut by: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for one in said {
+        by.entry(of(one)).or_default().push(&one.key);
+    }
+    by.into_values().filter(|keys| keys.len() > 1).collect()
+}
+
+#[test]
+fn each_message_has_a_key_of_its_own() {
+    let said = said();
+    println!("{} messages of {} themes", said.len(), themes(&said));
+    assert!(said.len() > 100, "the tables are not found any more");
+    assert_eq!(shared(&said, |one| &one.key), Vec::<Vec<&str>>::new());
+}
+
+#[test]
+fn no_two_messages_have_the_same_words() {
+    assert_eq!(shared(&said(), |one| &one.words), Vec::<Vec<&str>>::new());
+}
+
+fn themes(said: &[Said]) -> usize {
+    let mut themes: Vec<_> = said.iter().filter_map(|one| one.key.split('.').next()).collect();
+    themes.dedup();
+    themes.len()
+}
+
+/// The messages are all in files of that name, so that a catalogue can be made of them: nothing defines one elsewhere.
+#[test]
+fn tables_of_messages_stand_in_files_of_that_name() {
+    let is_table = |path: &String| {
+        let source = workspace::read(path);
+        source.lines().any(|line| line.trim_start() == "messages! {")
+    };
+    let elsewhere: Vec<_> = workspace::rust_files()
+        .into_iter()
+        .filter(|path| path.contains("/src/") && !path.ends_with("/messages.rs") && is_table(path))
+        .filter(|path| path != "device/values/src/message.rs")
+        .collect();
+    assert_eq!(elsewhere, Vec::<String>::new());
+}
