@@ -9,8 +9,7 @@ use std::time::{Duration, Instant};
 
 use brushwork_link::transport::{ConnectTarget, PortInfo, Transport, list_ports};
 use brushwork_link::{Failure, SystemClock};
-use brushwork_mcp_client::firmware::{Progress, Sent, send};
-use brushwork_mcp_wire::loader::Image;
+use brushwork_mcp_client::firmware::{Image, Progress, Sent, send};
 use crossbeam_channel::{Receiver, Sender, bounded};
 
 use super::{Simulation, connect};

@@ -9,6 +9,7 @@ mod error;
 mod risk;
 mod send;
 
+pub use brushwork_mcp_wire::loader::Image;
 pub use check::{Unsuitable, suit, suit_model};
 pub use error::{Left, SendError};
 pub use risk::risks;
