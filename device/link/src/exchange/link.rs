@@ -204,7 +204,7 @@ impl Exchange {
             let now = self.clock.now();
             self.look(watch, now)?;
             let quiet_until = quiet_since + quiet;
-            if now >= quiet_until || now >= begun_at + quiet.max(RECOVERY_LIMIT) {
+            if now >= quiet_until || now >= begun_at + quiet + RECOVERY_LIMIT {
                 self.unsettled = false;
                 return Ok(());
             }

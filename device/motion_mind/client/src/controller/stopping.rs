@@ -95,7 +95,10 @@ pub fn confirm(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<UnitStop, E
     // The answers of the unit do not say which question they answer, so none may be late any more.
     if line.exchange().may_hear_late_replies() {
         let (exchange, watch) = line.parts();
-        exchange.drain(if exchange.is_slow_to_reply() { LATE_REPLY } else { BROKEN_INTO }, watch)?;
+        let quiet = if exchange.is_slow_to_reply() { LATE_REPLY } else { BROKEN_INTO };
+        // On a late line what the stop broke into is still on its way for as long as any reply takes there.
+        let lateness = if exchange.is_late() { exchange.longest_turnaround() } else { Duration::ZERO };
+        exchange.drain(quiet + lateness, watch)?;
     }
     match stand(unit, line) {
         Ok(Ended::Stands) => stop.confirmed = true,
