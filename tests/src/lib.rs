@@ -9,6 +9,7 @@ pub mod hands;
 pub mod imports;
 pub mod other_controller;
 pub mod rust_source;
+pub mod said;
 pub mod screen;
 pub mod simulated;
 pub mod truth;

@@ -2,6 +2,7 @@
 //!
 //! The device thread's dead-man is renewed by this loop alone, so that a hung terminal stops the motors too.
 
+use brushwork_link::messages::ActMessage;
 use std::time::{Duration, Instant};
 
 use brushwork_link::device::DisarmReason;
@@ -120,7 +121,7 @@ fn keep_driving(
         match client.next_event(interrupt)? {
             Some(Event::Disarmed(reason)) => return Err(disarmed(&reason)),
             // The command never went out, on a line that was busy with faults for instance: nothing will move.
-            Some(Event::Failure(failure)) if failure.tried.starts_with("move the motor") => {
+            Some(Event::Failure(failure)) if matches!(failure.tried.get(), Some(ActMessage::Move)) => {
                 return Err(Exit::Refused.saying(failure));
             }
             Some(event) => {

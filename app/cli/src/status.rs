@@ -1,5 +1,6 @@
 //! `brushwork status`: what the controller measures and reports.
 
+use brushwork_link::messages::ActMessage;
 use std::time::{Duration, Instant};
 
 use brushwork_link::capability::{Learned, Presence};
@@ -56,7 +57,7 @@ pub fn run(args: &StatusArgs, out: &mut Output, interrupt: &Interrupt) -> Result
 /// The settings in RAM and the inputs, for the diagnosis; what cannot be read is told.
 fn read_setup(client: &Client, readings: &mut Readings, interrupt: &Interrupt) -> Result<(), Exit> {
     let Some(subject) = client.identity.subject() else { return Ok(()) };
-    let job = Job::new("read the settings", SETTINGS_LIMIT, move |context| {
+    let job = Job::new(ActMessage::ReadSettings, SETTINGS_LIMIT, move |context| {
         let settings = read_all(context, subject)?.image;
         Ok((settings, family::of(subject.family()).read_inputs(context)))
     });

@@ -4,6 +4,7 @@
 #![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
 
 pub mod keep;
+pub mod messages;
 pub mod motion;
 pub mod recording;
 pub mod session;

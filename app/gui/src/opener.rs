@@ -1,5 +1,8 @@
 //! The real sources of links and ports: each waits on a thread of its own, never on the window's.
 
+use crate::messages::{WindowActMessage, WindowCauseMessage, WindowRemedyMessage};
+use brushwork_link::Message;
+use brushwork_link::messages::RemedyMessage;
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 use std::time::Duration;
 
@@ -38,9 +41,9 @@ impl ListedPorts {
         let (sender, receiver) = bounded(1);
         let watch = std::thread::Builder::new().name("ports".to_owned()).spawn(move || watch(&sender, &ctx));
         if let Err(error) = watch {
-            let remedy = "Type the path of the port instead";
+            let (error, remedy) = (Message::error(error), RemedyMessage::TypePath);
             let (sender, receiver) = bounded(1);
-            let failure = Failure::new("watch the serial ports", "", error, remedy);
+            let failure = Failure::new(WindowActMessage::WatchPorts, "", error, remedy);
             sender.send(Err(failure)).expect("the channel is empty and its receiver is here");
             return Self(receiver);
         }
@@ -137,7 +140,8 @@ fn find(running: &Running, target: &ConnectTarget) -> Option<Arc<Simulation>> {
 impl SimulatedWorld for Simulation {
     fn apply(&self, unit: usize, action: WorldAction) -> Result<(), Failure> {
         Self::apply(self, unit, action).map_err(|error| {
-            Failure::new("change the simulated world", "", error, "Disconnect and connect again")
+            let error = WindowCauseMessage::Said { text: error.to_string() };
+            Failure::new(WindowActMessage::ChangeWorld, "", error, WindowRemedyMessage::ConnectAgain)
         })
     }
 
@@ -151,12 +155,8 @@ impl SimulatedWorld for Simulation {
 
     fn debug(&self, unit: usize, requests: Vec<Request>, wanted: Wanted) -> Result<(), Failure> {
         Self::debug(self, unit, requests, wanted).map_err(|error| {
-            Failure::new(
-                "debug the script of the simulated controller",
-                "",
-                error,
-                "Disconnect and connect again",
-            )
+            let error = WindowCauseMessage::Said { text: error.to_string() };
+            Failure::new(WindowActMessage::DebugScript, "", error, WindowRemedyMessage::ConnectAgain)
         })
     }
 

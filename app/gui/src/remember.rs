@@ -3,6 +3,8 @@
 //! The file is replaced as a whole. One that cannot be read is a sentence and the defaults; it is put aside, not
 //! overwritten. Values that make no sense count as not given.
 
+use crate::messages::{WindowActMessage, WindowRemedyMessage};
+use brushwork_link::Message;
 use std::path::{Path, PathBuf};
 use std::thread::{self, JoinHandle};
 use std::{fs, io};
@@ -189,7 +191,7 @@ fn read(path: &Path) -> Result<Remembered, Failure> {
     let text = match fs::read_to_string(path) {
         Ok(text) => text,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Remembered::default()),
-        Err(error) => return Err(unread(path, error, "Brushwork starts as it is at first")),
+        Err(error) => return Err(unread(path, Message::error(error), WindowRemedyMessage::StartsAsAtFirst)),
     };
     match serde_json::from_str::<Remembered>(&text) {
         Ok(remembered) => Ok(sane(remembered)),
@@ -197,14 +199,14 @@ fn read(path: &Path) -> Result<Remembered, Failure> {
             let aside = path.with_extension("json.broken");
             // If it cannot be put aside, it is overwritten: nothing in it is worth more than starting.
             let _ = fs::rename(path, &aside);
-            let remedy = format!("Brushwork starts as it is at first. The old file is {}", aside.display());
-            Err(unread(path, error, &remedy))
+            let remedy = WindowRemedyMessage::OldFileIsAside { path: aside.display().to_string() };
+            Err(unread(path, Message::error(error), remedy))
         }
     }
 }
 
-fn unread(path: &Path, error: impl std::fmt::Display, remedy: &str) -> Failure {
-    Failure::new("read the window's state", path.display().to_string(), error, remedy)
+fn unread(path: &Path, error: Message, remedy: WindowRemedyMessage) -> Failure {
+    Failure::new(WindowActMessage::ReadState, path.display().to_string(), error, remedy)
 }
 
 /// A window that is nowhere or has no size is as good as none.
@@ -272,15 +274,15 @@ impl Writer {
 }
 
 fn write(path: &Path, remembered: &Remembered) -> Result<(), Failure> {
-    let failed = |error: &dyn std::fmt::Display| {
-        let remedy = "The next start will be as the last one was. Look at the folder's permissions";
-        Failure::new("keep the window's state", path.display().to_string(), error, remedy)
+    let failed = |error: Message| {
+        let remedy = WindowRemedyMessage::CheckFolder;
+        Failure::new(WindowActMessage::KeepState, path.display().to_string(), error, remedy)
     };
-    let text = serde_json::to_string_pretty(remembered).map_err(|error| failed(&error))?;
+    let text = serde_json::to_string_pretty(remembered).map_err(|error| failed(Message::error(error)))?;
     if let Some(folder) = path.parent() {
-        fs::create_dir_all(folder).map_err(|error| failed(&error))?;
+        fs::create_dir_all(folder).map_err(|error| failed(Message::error(error)))?;
     }
-    replace_file(path, text.as_bytes()).map_err(|error| failed(&error))
+    replace_file(path, text.as_bytes()).map_err(|error| failed(Message::error(error)))
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 
 #![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
 
+pub mod messages;
 pub mod simulator;
 pub mod tuned;
 

@@ -1,6 +1,8 @@
 //! The loops of a family's units as jobs of the device thread tune them, and two families as one.
 
+use crate::messages::{LoopActMessage, LoopRemedyMessage};
 use brushwork_link::Failure;
+use brushwork_link::Message;
 use brushwork_link::Stream;
 use brushwork_link::device::JobContext;
 use brushwork_link::exchange::ExchangeError;
@@ -168,11 +170,6 @@ pub fn thrice<T>(mut call: impl FnMut() -> Result<T, AxisError>) -> Result<T, Ax
 
 /// What was tried on the loops of a unit and failed.
 #[must_use]
-pub fn failed(tried: &str, place: &str, error: &AxisError) -> Failure {
-    Failure::new(
-        tried,
-        place,
-        error.to_string(),
-        "Check the link and try again; `brushwork settings read` shows the loops",
-    )
+pub fn failed(tried: LoopActMessage, place: &str, error: &AxisError) -> Failure {
+    Failure::new(tried, place, Message::error(error.clone()), LoopRemedyMessage::CheckLink)
 }

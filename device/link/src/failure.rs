@@ -10,24 +10,24 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Failure {
     /// What was tried, as a bare verb phrase: "read the firmware version".
-    pub tried: String,
+    pub tried: Message,
     /// On what: "0x80 at /dev/ttyACM0". Empty when the phrase says it already.
     pub on: String,
     /// What came back, without a full stop: "no answer within 60 ms (3 tries)".
-    pub came_back: String,
+    pub came_back: Message,
     /// What to do, a sentence without its full stop. Empty when there is nothing to do.
-    pub remedy: String,
+    pub remedy: Message,
 }
 
 impl Failure {
     /// A failure from its four parts.
     pub fn new(
-        tried: impl Into<String>,
+        tried: impl Into<Message>,
         on: impl Into<String>,
-        came_back: impl fmt::Display,
-        remedy: impl Into<String>,
+        came_back: impl Into<Message>,
+        remedy: impl Into<Message>,
     ) -> Self {
-        Self { tried: tried.into(), on: on.into(), came_back: came_back.to_string(), remedy: remedy.into() }
+        Self { tried: tried.into(), on: on.into(), came_back: came_back.into(), remedy: remedy.into() }
     }
 }
 
@@ -58,20 +58,18 @@ impl std::error::Error for Failure {}
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::messages::{ActMessage, CauseMessage, RemedyMessage};
 
     #[test]
     fn a_failure_reads_as_a_sentence_with_all_four_parts() {
         let failure =
-            Failure::new("read the status", "0x80 at COM3", "no answer within 60 ms", "Check the wiring");
-        assert_eq!(
-            failure.to_string(),
-            "Could not read the status on 0x80 at COM3: no answer within 60 ms. Check the wiring."
-        );
+            Failure::new(ActMessage::Move, "0x80 at COM3", CauseMessage::NoAnswer, RemedyMessage::TryAgain);
+        assert_eq!(failure.to_string(), "Could not move the motors on 0x80 at COM3: no answer. Try again.");
     }
 
     #[test]
     fn parts_that_are_empty_leave_no_trace() {
-        let failure = Failure::new("list the serial ports", "", "permission denied", "");
-        assert_eq!(failure.to_string(), "Could not list the serial ports: permission denied.");
+        let failure = Failure::new(ActMessage::ListPorts, "", CauseMessage::NoAnswer, Message::default());
+        assert_eq!(failure.to_string(), "Could not list the serial ports: no answer.");
     }
 }

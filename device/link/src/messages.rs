@@ -1,5 +1,6 @@
 //! What this crate says to people, in its words: one table for each theme.
 
+use crate::device::ArmScope;
 use crate::unit::{FirmwareGeneration, UnitAddress};
 use brushwork_values::{Listed, Message, messages};
 
@@ -156,4 +157,96 @@ messages! {
 /// "1 setting", "12 settings".
 pub fn settings(count: usize) -> Message {
     if count == 1 { CountMessage::OneSetting } else { CountMessage::Settings { count } }.into()
+}
+
+messages! {
+    /// What is tried, as a bare verb phrase, in failures and as the name of a job.
+    pub enum ActMessage {
+        FindController "find a controller",
+        ListPorts "list the serial ports",
+        Read { phrase: String } "{phrase}",
+        ReadSettings "read the settings",
+        ReadSettingsFirst "read the settings first",
+        ReadSettingsBack "read the settings back",
+        ReadItem { name: &'static str } "read: {name}",
+        Write { what: String } "write {what}",
+        KeepBackup { act: &'static str } "keep a backup before the {act}",
+        Select { place: String } "select the unit {place}",
+        Arm { scope: ArmScope } "arm {scope}",
+        Move "move the motors",
+        Stop "stop the motors",
+        StartScript "start the script",
+        StopScript "stop the script",
+        SetEncoder "set the encoder",
+        ZeroEncoders "zero the encoders",
+        ResetEStop "reset the E-stop",
+        SendCommand { command: u8 } "send command {command}",
+        SendTyped "send what was typed",
+        EnterLoader "enter the firmware loader",
+        GoOnTalking "go on talking to the controller",
+        GoOn "go on",
+    }
+}
+
+messages! {
+    /// What came back of what was tried, as a clause.
+    pub enum CauseMessage {
+        NoFamily "this program has no family of controllers",
+        ListUnreadable "the system's list cannot be read",
+        NoSuchUnit "no unit answered there when the link was opened",
+        Addresses { listed: String } "the addresses {listed}",
+        NoAnswer "no answer",
+        NoAnswerAfterwards { seconds: u64 } "no answer for {seconds} s afterwards",
+        ReplyTooShort "the reply does not hold everything that this generation returns",
+        DiskIsLate "the disk did not answer in time",
+        NoResult "it ended without a result",
+        Stopped "Stop was pressed after it",
+        StoppedSince "Stop was pressed after it was asked for",
+        TooOld "it waited for longer than a motion may live",
+        NotArmed "the motors are not armed",
+        NotStopped "the motors could not be stopped first",
+        NotStanding "the motors did not confirm that they stand",
+        StopUnconfirmed { seconds: u64 } "it did not confirm within {seconds} s",
+        LineIsShared "other controllers share this line",
+        NoScript { answer: u8 } "it answered {answer:02X} instead of FF: it holds no script that it can run",
+        ThreadFailed "the device thread failed; stop was sent",
+        ThreadFailedMoving "the device thread failed, and stop could not be sent",
+    }
+}
+
+messages! {
+    /// What to do, as a sentence without its full stop.
+    pub enum RemedyMessage {
+        CheckWiring "Check the controller's power, the wiring, the baud rate and the address",
+        CheckLine "Check the baud rate, the wiring and ground, and that no two units share an address",
+        LookAtMotor "Look where the motor stands before you send it again",
+        TryWhenReady "Try again when you are ready",
+        ArmFirst "Arm the motors on this screen first",
+        TrySimulated "Try it on a simulated controller",
+        DoWithout "Do without it, or check the firmware's version",
+        CheckValue "Check the value and the state of the controller",
+        AskOtherwise "Ask for something else",
+        StayInRange "Use a value in range",
+        CheckCable "Check the cable and connect again",
+        TypePath "Type the path of the port instead",
+        TryAgain "Try again",
+        CheckDisk "Check the disk and try again",
+        CheckFirmware "Check which firmware the controller has",
+        CheckPowerAndAddress "Check its power; if it was given another address and that was not saved, look for it at the old one",
+        StartWhenReady "Start it again when you are ready",
+        SendWhenReady "Send it again when you are ready",
+        AskWhenReady "Ask again when you are ready",
+        ArmWhenReady "Arm again when you are ready",
+        PressStop "Press Stop, then try again",
+        CutPower "Cut its motor power now: its motors may still be running",
+        CutPowerFirst "Cut the motor power, then try again",
+        ConnectAlone "Connect the controller alone, over its USB port",
+        ConnectAnew "Disconnect and connect again to look for it",
+        DownloadFirst "Download the script first; a simulated controller runs what this program compiles, a real one what the maker's tool compiles",
+        SeeThatTheyStand "Make sure that the motors stand still; then check power and cable, and connect again",
+        CheckPowerAndCable "Check the controller's power and the cable, then connect again",
+        ReportBug "Make sure that the motors stand still, connect again, and report this as a bug",
+        LeftOut { seconds: u64 } "It is left out for {seconds} s, then tried again",
+        OrElsewhere { remedy: Message, other: &'static str } "{remedy}. {other}",
+    }
 }

@@ -1,5 +1,7 @@
 //! Every byte that the device thread sends while it connects, polls, reads, writes, saves, drives, stops and tunes, in virtual time.
 
+use brushwork_link::Message;
+use brushwork_tests::said::Said;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::time::Duration;
@@ -68,7 +70,7 @@ fn job<M: Machine + 'static, T: Send + 'static>(
     link: &mut VirtualLink<M>,
     work: impl FnMut(&mut JobContext<'_>) -> Result<T, Failure> + Send + 'static,
 ) {
-    let ending = link.finish(Job::new("work", LIMIT, work), LIMIT);
+    let ending = link.finish(Job::new(Said::Work, LIMIT, work), LIMIT);
     assert!(matches!(ending, Some(JobEnding::Done(_))), "{ending:?}: {:?}", link.events);
 }
 
@@ -93,7 +95,7 @@ fn worked<M: Machine + 'static>(
     let wanted: SettingsImage = changes.iter().map(|(key, value)| ((*key).to_owned(), *value)).collect();
     job(link, move |wire| {
         let report = write(wire, &SettingsTable::new(subject), &wanted, OPTIONS)
-            .map_err(|error| Failure::new("write", "it", error.to_string(), "look"))?;
+            .map_err(|error| Failure::new(Said::Write, "it", Message::error(error), Said::Look))?;
         assert!(report.is_complete(), "{report:?}");
         Ok(())
     });

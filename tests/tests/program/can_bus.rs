@@ -1,6 +1,7 @@
 //! The device thread on a CANopen bus with simulated nodes, in virtual time: it finds them, reads and writes what packet serial does, and
 //! holds the same safety rules.
 
+use brushwork_tests::said::Said;
 use std::time::Duration;
 
 use brushwork_canopen::adapter::Form;
@@ -136,7 +137,7 @@ fn run<T: Send + 'static>(
     link: &mut VirtualLink,
     mut work: impl FnMut(&mut brushwork_link::device::JobContext<'_>) -> T + Send + 'static,
 ) -> T {
-    let ticket = link.start(Job::new("test", Duration::from_secs(300), move |wire| Ok(work(wire))));
+    let ticket = link.start(Job::new(Said::Test, Duration::from_secs(300), move |wire| Ok(work(wire))));
     for _ in 0..300 {
         link.run_for(ms(1000));
         if let Some(value) = ticket.take() {

@@ -1,6 +1,7 @@
 //! Attempts to get a motor driven that should stand: everything that could go wrong at the worst moment, in virtual time against
 //! the simulated controller.
 
+use brushwork_tests::said::Said;
 use std::time::Duration;
 
 use brushwork_link::Stream;
@@ -107,12 +108,12 @@ fn every_request(index: usize) -> Option<Request> {
         15 => Request::Trace(true),
         16 => Request::Disarm,
         17 => Request::Job(
-            Job::<()>::moving("wander", ms(400), |context| {
+            Job::<()>::moving(Said::Wander, ms(400), |context| {
                 loop {
                     let moved =
                         context.transact(number::DUTY_M1, &[9_000]).and_then(|_| context.sleep(ms(20)));
                     if let Err(error) = moved {
-                        return Err(error.failure("wander", "the bench"));
+                        return Err(error.failure(Said::Wander, "the bench"));
                     }
                 }
             })
@@ -302,8 +303,8 @@ fn a_silent_unit_on_the_bus_does_not_delay_the_stop_of_the_others() {
 fn a_settings_job_that_changes_what_arming_was_based_on_stops_the_motors_first_and_goes_on() {
     let mut link = usb(Generation::Gen1);
     start(&mut link, 0);
-    let job = Job::new("write settings", ms(2_000), |context| {
-        let fail = |error: brushwork_link::ExchangeError| error.failure("write settings", "the bench");
+    let job = Job::new(Said::Settings, ms(2_000), |context| {
+        let fail = |error: brushwork_link::ExchangeError| error.failure(Said::Settings, "the bench");
         context.transact(number::SET_STREAM, &[0, 1, 115_200, 0]).map_err(fail)?;
         context.transact(number::SET_VELOCITY_PID_M1, &[0, 65_536, 32_768, 30_000]).map_err(fail)?;
         Ok(())

@@ -1,6 +1,7 @@
 //! The safety rules of the device thread against the simulated controller in virtual time: motors that turn, and what
 //! stops them.
 
+use brushwork_tests::said::Said;
 use std::time::Duration;
 
 use brushwork_link::Interruption;
@@ -381,7 +382,7 @@ fn a_stop_into_a_dead_spot_of_the_line_is_repeated_until_it_is_heard() {
 fn a_job_that_panics_in_mid_motion_leaves_the_motors_standing() {
     let mut link = usb(config(Generation::Gen1), Vec::new(), 1);
     assert!(link.arm(ArmScope::Tuning));
-    let job = Job::<()>::moving("try the motor", ms(10_000), |context| {
+    let job = Job::<()>::moving(Said::TryMotor, ms(10_000), |context| {
         context.transact(number::DUTY_BOTH, &[16_384, 16_384]).expect("it is armed");
         context.sleep(ms(300)).expect("nothing breaks in");
         panic!("a bug in the job")
@@ -402,7 +403,7 @@ fn a_job_that_panics_in_mid_motion_leaves_the_motors_standing() {
 fn stop_overtakes_the_reading_of_all_settings() {
     let mut link = driving_on_rs232();
     let model = models::lookup("mcp266").expect("it is in the list");
-    let job = Job::new("read the settings", ms(30_000), move |context| {
+    let job = Job::new(Said::Settings, ms(30_000), move |context| {
         let subject =
             brushwork_mcp_client::subject(model, brushwork_mcp_client::layout_of(context.generation()));
         read_all(context, subject)
@@ -540,12 +541,12 @@ fn act_at_random(link: &mut VirtualLink, dice: &mut Dice, watchman: &mut Watchma
         )),
         12 => ask(Request::StartScript),
         13 => ask(Request::Job(
-            Job::<()>::moving("wander", ms(400), |context| {
+            Job::<()>::moving(Said::Wander, ms(400), |context| {
                 loop {
                     let error =
                         context.transact(number::DUTY_M1, &[9_000]).and_then(|_| context.sleep(ms(20))).err();
                     if let Some(error) = error {
-                        return Err(error.failure("wander", "the bench"));
+                        return Err(error.failure(Said::Wander, "the bench"));
                     }
                 }
             })

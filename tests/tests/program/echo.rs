@@ -9,6 +9,7 @@ use brushwork_link::unit::FirmwareGeneration;
 use brushwork_link::{FamilyChoice, register};
 use brushwork_plant::machine::{Machine, StreamIndex};
 use brushwork_plant::world::{WorldAction, WorldView};
+use brushwork_tests::said::Said;
 use brushwork_tests::virtual_link::VirtualLink;
 use brushwork_values::{Motor, Severity};
 use family::{CHANNELS, ECHO, Echo, EchoMachine, MODELS};
@@ -83,7 +84,7 @@ fn the_settings_of_a_family_of_one_are_read_written_and_held_to_their_range() {
     let mut link = connected();
     let subject = Subject::new(&MODELS[0], FirmwareGeneration::new(ECHO, 1));
     let wanted = |value| [("loop.gain".to_owned(), SettingValue::Int(value))].into_iter().collect();
-    let job = Job::new("write the gain", ms(5000), move |wire| {
+    let job = Job::new(Said::Write, ms(5000), move |wire| {
         let table = SettingsTable::new(subject);
         let report = write(wire, &table, &wanted(7), WriteOptions::default());
         let refused = write(wire, &table, &wanted(101), WriteOptions::default());

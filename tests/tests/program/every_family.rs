@@ -1,5 +1,6 @@
 //! What every family promises, on a simulated unit of each of its models. A family that joins the program's list is tested here without a line more.
 
+use brushwork_tests::said::Said;
 use std::time::Duration;
 
 use brushwork::{FAMILIES, Family};
@@ -175,7 +176,7 @@ fn the_settings_of_each_model_are_read_are_in_range_and_take_each_other_value_th
     for case in cases() {
         let (mut link, unit) = case.connected();
         let subject = unit.subject().unwrap_or_else(|| panic!("{} has no settings", case.key()));
-        let job = Job::new("settings", 60 * SECOND, move |wire| {
+        let job = Job::new(Said::Settings, 60 * SECOND, move |wire| {
             let table = SettingsTable::new(subject);
             let before = read_all(wire, subject)?.image;
             // The least change of each setting, one write for all that can be planned beside each other.

@@ -132,7 +132,9 @@ fn no_other_request_enters_the_loader() {
     link.ask(Request::Transact { id: 7, command: number::ENTER_LOADER, values: Vec::new() });
     link.run_for(Duration::from_millis(300));
     let refused = link.events.iter().any(|(_, event)| match event {
-        Event::Transacted { id: 7, result: Err(failure) } => failure.came_back.contains("risk was accepted"),
+        Event::Transacted { id: 7, result: Err(failure) } => {
+            failure.came_back.to_string().contains("risk was accepted")
+        }
         _ => false,
     });
     assert!(refused, "{:?}", link.events.last());

@@ -6,6 +6,8 @@
 //! as the public simulator `MM3Sim` (Java, `edu.unc.ims.util.MM3SimHandler`): it looks at its line ten times a second, answers the read of
 //! all registers with random numbers, every other read with an empty line and the rest with OK, each with a line feed alone.
 
+use brushwork_link::Message;
+use brushwork_tests::said::Said;
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -495,7 +497,7 @@ fn job<T: Send + 'static>(
     work: impl FnMut(&mut JobContext<'_>) -> Result<T, Failure> + Send + 'static,
 ) -> T {
     let limit = Duration::from_secs(60);
-    match link.finish(Job::new("work", limit, work), limit) {
+    match link.finish(Job::new(Said::Work, limit, work), limit) {
         Some(JobEnding::Done(value)) => value,
         other => panic!("{other:?}: {:?}", link.events),
     }
@@ -569,7 +571,7 @@ fn settings_of_a_foreign_unit_are_read_written_and_stored() {
         let copy = table.clone();
         let report = job(&mut link, move |wire| {
             write(wire, &copy, &image, OPTIONS)
-                .map_err(|error| Failure::new("write", "it", error.to_string(), "look"))
+                .map_err(|error| Failure::new(Said::Write, "it", Message::error(error), Said::Look))
         });
         assert!(report.is_complete(), "{manner:?}: {:?}", report.rows);
         assert_eq!(link.bus(|unit| (unit.ram[4], unit.ram[24], unit.ram[3])), (4321, 123_456, 0x10));

@@ -1,6 +1,7 @@
 //! The device thread on simulated Motion Minds in virtual time: found, read, driven by mode, stopped, set and saved, in both
 //! protocols, on clean and on bad lines.
 
+use brushwork_tests::said::Said;
 use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -199,7 +200,7 @@ fn job<T: Send + 'static>(
     work: impl FnMut(&mut JobContext<'_>) -> Result<T, Failure> + Send + 'static,
 ) -> Result<T, String> {
     let limit = Duration::from_secs(60);
-    match link.finish(Job::new("work", limit, work), limit) {
+    match link.finish(Job::new(Said::Work, limit, work), limit) {
         Some(JobEnding::Done(value)) => Ok(value),
         other => Err(format!("{other:?}: {:?}", link.events)),
     }
@@ -480,7 +481,7 @@ fn stop_takes_a_slow_ramp_away_and_puts_it_back() {
         let mut link = connected(Mode::Serial, protocol);
         // 10 of 1023 every 50 ms: five seconds from full drive to nothing.
         job(&mut link, |wire| {
-            wire.transact(0x18, &[VELOCITYLIMIT.into(), 10]).map_err(|error| error.failure("write", "it"))
+            wire.transact(0x18, &[VELOCITYLIMIT.into(), 10]).map_err(|error| error.failure(Said::Write, "it"))
         })
         .unwrap();
         assert!(link.arm(ArmScope::Pwm));
@@ -509,9 +510,9 @@ fn a_loop_that_shakes_its_motor_is_switched_off_by_stop_until_the_motor_stands()
         assert!(link.arm(ArmScope::Velocity));
         // So much gain that the loop oscillates for ever.
         job(&mut link, |wire| {
-            wire.transact(0x18, &[PTERM.into(), 60_000]).map_err(|error| error.failure("write", "it"))?;
-            wire.transact(0x18, &[DTERM.into(), 0]).map_err(|error| error.failure("write", "it"))?;
-            wire.transact(0x18, &[PIDSCALAR.into(), 4]).map_err(|error| error.failure("write", "it"))
+            wire.transact(0x18, &[PTERM.into(), 60_000]).map_err(|error| error.failure(Said::Write, "it"))?;
+            wire.transact(0x18, &[DTERM.into(), 0]).map_err(|error| error.failure(Said::Write, "it"))?;
+            wire.transact(0x18, &[PIDSCALAR.into(), 4]).map_err(|error| error.failure(Said::Write, "it"))
         })
         .unwrap();
         link.arm(ArmScope::Velocity);
@@ -594,7 +595,7 @@ fn arming_says_that_no_time_out_covers_the_death_of_the_program_and_refuses_what
     let mut link = connected(Mode::SerialPid, Protocol::Binary);
     job(&mut link, |wire| {
         let word = i64::from(function::DISABLEPID);
-        wire.transact(0x18, &[FUNCTION.into(), word]).map_err(|error| error.failure("write", "it"))
+        wire.transact(0x18, &[FUNCTION.into(), word]).map_err(|error| error.failure(Said::Write, "it"))
     })
     .unwrap();
     tame(&link);
@@ -624,7 +625,7 @@ fn arming_switches_a_loop_on_only_where_it_holds_the_motor_still() {
             let word = i64::from(function::DISABLEPID);
             for (register, value) in [(FUNCTION, word), (PTERM, 60_000), (DTERM, 0), (PIDSCALAR, 4)] {
                 wire.transact(0x18, &[register.into(), value])
-                    .map_err(|error| error.failure("write", "it"))?;
+                    .map_err(|error| error.failure(Said::Write, "it"))?;
             }
             Ok(())
         })
@@ -691,7 +692,8 @@ fn return_bits_change_the_acknowledges_and_nothing_else() {
         let mut link = connected(Mode::Serial, protocol);
         for word in [2_i64, 4, 8, 14, 6, 0] {
             job(&mut link, move |wire| {
-                wire.transact(0x18, &[FUNCTION.into(), word]).map_err(|error| error.failure("write", "it"))
+                wire.transact(0x18, &[FUNCTION.into(), word])
+                    .map_err(|error| error.failure(Said::Write, "it"))
             })
             .unwrap();
             assert!(link.arm(ArmScope::Pwm), "{protocol} {word}: {:?}", failures(&link));
@@ -746,7 +748,7 @@ fn settings_are_read_written_saved_and_survive_a_power_cycle_and_what_was_not_sa
         let (copy, on) = (table.clone(), changes.clone());
         let report = job(&mut link, move |wire| {
             write(wire, &copy, &on, OPTIONS)
-                .map_err(|error| Failure::new("write", "it", error.to_string(), "look"))
+                .map_err(|error| Failure::new(Said::Write, "it", Message::error(error), Said::Look))
         })
         .unwrap();
         assert!(report.is_complete(), "{protocol}: {:?}", report.rows);
@@ -764,7 +766,7 @@ fn settings_are_read_written_saved_and_survive_a_power_cycle_and_what_was_not_sa
         let copy = table.clone();
         job(&mut link, move |wire| {
             write(wire, &copy, &wanted(&[("register.dterm", SettingValue::Int(99))]), OPTIONS)
-                .map_err(|error| Failure::new("write", "it", error.to_string(), "look"))
+                .map_err(|error| Failure::new(Said::Write, "it", Message::error(error), Said::Look))
         })
         .unwrap();
         let subject = *table.subject();
@@ -787,7 +789,7 @@ fn restoring_the_factory_values_changes_ram_and_eeprom_and_follows_the_unit_to_a
         link.run_for(ms(1_500));
         let subject = connected_subject(&link);
         let report = job(&mut link, move |wire| {
-            wire.transact(0x19, &[PTERM.into(), 77]).map_err(|error| error.failure("store", "it"))?;
+            wire.transact(0x19, &[PTERM.into(), 77]).map_err(|error| error.failure(Said::Store, "it"))?;
             restore_defaults(wire, subject)
         })
         .unwrap();
@@ -806,7 +808,7 @@ fn a_new_address_is_followed() {
         let table = table(&mut link);
         let report = job(&mut link, move |wire| {
             write(wire, &table, &wanted(&[("register.address", SettingValue::Int(42))]), OPTIONS)
-                .map_err(|error| Failure::new("write", "it", error.to_string(), "look"))
+                .map_err(|error| Failure::new(Said::Write, "it", Message::error(error), Said::Look))
         })
         .unwrap();
         assert!(report.is_complete(), "{protocol}: {report:?}");

@@ -188,8 +188,11 @@ fn an_image_that_does_not_fit_is_told_with_its_place() {
     let mut link = connected();
     let file = ScriptImage::from_file(&vec![0x5A; 0x100 + 0x1_0010]).unwrap();
     let failure = refused(ended(&mut link, download_job(file, false)));
-    assert!(failure.came_back.starts_with("the block at 0x010000 was answered with status 00"), "{failure}");
-    assert!(failure.remedy.contains("holds a part of the image"), "{failure}");
+    assert!(
+        failure.came_back.to_string().starts_with("the block at 0x010000 was answered with status 00"),
+        "{failure}"
+    );
+    assert!(failure.remedy.to_string().contains("holds a part of the image"), "{failure}");
 }
 
 #[test]

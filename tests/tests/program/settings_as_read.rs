@@ -1,6 +1,8 @@
 //! Whatever registers a unit holds, out of range and without a meaning too, a profile of it brings back to the last bit, in
 //! virtual time: random states of every model and generation, exported, compared, and written to a unit from the factory.
 
+use brushwork_link::Message;
+use brushwork_tests::said::Said;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Duration;
@@ -191,7 +193,7 @@ fn job<T: Send + 'static>(
     work: impl FnMut(&mut JobContext<'_>) -> Result<T, Failure> + Send + 'static,
 ) -> T {
     let limit = Duration::from_secs(60);
-    match link.finish(Job::new("work", limit, work), limit) {
+    match link.finish(Job::new(Said::Work, limit, work), limit) {
         Some(JobEnding::Done(value)) => value,
         other => panic!("{other:?}: {:?}", link.events),
     }
@@ -226,7 +228,7 @@ fn any_registers_of_a_motion_mind_come_back_to_the_last_bit_in_both_protocols() 
             job(&mut link, move |wire| {
                 for (number, value) in &values {
                     let written = wire.transact(0x18, &[(*number).into(), *value]);
-                    written.map_err(|error| error.failure("write", "it"))?;
+                    written.map_err(|error| error.failure(Said::Write, "it"))?;
                 }
                 Ok(())
             });
@@ -255,7 +257,7 @@ fn any_registers_of_a_motion_mind_come_back_to_the_last_bit_in_both_protocols() 
             let (copy, on) = (table.clone(), wanted.clone());
             let report = job(&mut link, move |wire| {
                 let written = write(wire, &copy, &on, options);
-                written.map_err(|error| Failure::new("write", "it", error.to_string(), "look"))
+                written.map_err(|error| Failure::new(Said::Write, "it", Message::error(error), Said::Look))
             });
             assert!(report.is_complete(), "{what}: {:#?}", report.sentences(&table));
             assert_eq!(mind_registers(&link), held, "{what}");

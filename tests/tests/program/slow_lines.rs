@@ -1,6 +1,7 @@
 //! Every rate, firmware and lateness of a line: the unit is found, its status and settings are read, its motor is driven and stopped, in
 //! virtual time. What cannot be is refused with a sentence that names the lateness.
 
+use brushwork_tests::said::Said;
 use std::fmt::Debug;
 use std::time::Duration;
 
@@ -79,7 +80,7 @@ impl Case {
 
         let begun = link.now();
         let subject = unit.subject().expect("the model is known");
-        let read = Job::new("settings", Duration::from_secs(600), move |wire| read_all(wire, subject));
+        let read = Job::new(Said::Settings, Duration::from_secs(600), move |wire| read_all(wire, subject));
         let report = match link.finish(read, Duration::from_secs(600)) {
             Some(JobEnding::Done(report)) => report,
             other => panic!("{self:?}: settings: {:?}", other.map(|ending| format!("{ending:?}"))),
@@ -234,7 +235,8 @@ fn a_motion_mind_is_found_read_driven_and_stopped_on_every_line() {
             let subject = unit.and_then(|unit| unit.subject()).expect("the model is known");
             let is_status = |event: &Event| matches!(event, Event::Status(_));
             assert!(run_until(&mut link, 30, is_status), "{case:?}: no status");
-            let read = Job::new("settings", Duration::from_secs(600), move |wire| read_all(wire, subject));
+            let read =
+                Job::new(Said::Settings, Duration::from_secs(600), move |wire| read_all(wire, subject));
             let begun = link.now();
             match link.finish(read, Duration::from_secs(600)) {
                 Some(JobEnding::Done(report)) if report.failures.is_empty() => {}

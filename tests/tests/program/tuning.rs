@@ -1,5 +1,6 @@
 //! Whole tuning runs through the device thread with real bytes, in virtual time: faults, Stop and a lost cable at every stage.
 
+use brushwork_tests::said::Said;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
@@ -384,7 +385,7 @@ fn gains_that_were_kept_and_saved_are_there_after_a_power_cycle_and_so_is_the_us
     let new = report.proposed.first.velocity.expect("gains");
     let table = SettingsTable::new(subject());
     let options = WriteOptions { own_stream: Some(Stream::Usb), simulated: true, as_read: false };
-    let saving = Job::new("save the settings", ms(60_000), move |wire| {
+    let saving = Job::new(Said::Save, ms(60_000), move |wire| {
         save_kept(wire, &table, options, &mut Noting(Journal::default()))
     });
     let saved = link.finish(saving, ms(60_000));

@@ -1,5 +1,7 @@
 //! A connected controller whose settings are to be read or written: work runs as jobs on its device thread.
 
+use brushwork_link::Message;
+use brushwork_link::messages::ActMessage;
 use std::io::{self, IsTerminal as _, Write as _};
 use std::time::{Duration, Instant};
 
@@ -103,7 +105,7 @@ impl<'i> Controller<'i> {
     /// Reads every setting; says what could not be read.
     pub fn read_quietly(&self) -> Result<ReadReport, Exit> {
         let table = SettingsTable::new(self.subject);
-        let finished = self.act("read the settings", Act::Read, &table, self.write_options())?;
+        let finished = self.act(ActMessage::ReadSettings, Act::Read, &table, self.write_options())?;
         if let Some(exit) = finished.broken {
             return Err(exit);
         }
@@ -121,7 +123,7 @@ impl<'i> Controller<'i> {
     /// Has an act on the settings done, with what it keeps on this computer, and waits for its end.
     pub fn act(
         &self,
-        name: &str,
+        name: impl Into<Message>,
         act: Act,
         table: &SettingsTable,
         options: WriteOptions,
@@ -133,12 +135,13 @@ impl<'i> Controller<'i> {
     /// comes back all the same.
     pub fn run<T: Send + 'static>(
         &self,
-        name: &str,
+        name: impl Into<Message>,
         limit: Duration,
         mut work: impl FnMut(&mut JobContext<'_>) -> T + Send + 'static,
     ) -> Result<Finished<T>, Exit> {
         // What came of an act that failed is a result too, so that it comes back after an interruption.
-        let job = Job::new(name, limit, move |wire| Ok(work(wire)));
+        let name = name.into();
+        let job = Job::new(name.clone(), limit, move |wire| Ok(work(wire)));
         let ticket = self
             .client
             .device()

@@ -1,5 +1,7 @@
 //! `brushwork settings save` and `defaults`: acts on the controller's own memory, asked for and proven.
 
+use crate::messages::CliActMessage;
+use brushwork_core::messages::CoreActMessage;
 use brushwork_link::settings::{DefaultsReport, SaveReport, SaveVerdict, SettingsTable};
 use serde_json::json;
 
@@ -62,7 +64,8 @@ pub fn save_to_eeprom(
     controller: &Controller<'_>,
     table: &SettingsTable,
 ) -> Result<(SaveReport, Exit), Exit> {
-    let finished = controller.act("save the settings", Act::Save, table, controller.write_options())?;
+    let finished =
+        controller.act(CliActMessage::SaveSettings, Act::Save, table, controller.write_options())?;
     let report = match finished.value {
         Ok(Done::Saved(report)) => *report,
         Ok(_) => return Err(Exit::Failed),
@@ -91,7 +94,8 @@ pub fn defaults(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> R
     let question = format!("Restore the factory defaults of {}?", controller.describe());
     ask::agreed(&question, args.yes, &controller)?;
     let options = controller.write_options();
-    let finished = controller.act("restore the defaults", Act::RestoreDefaults, &ram.table, options)?;
+    let finished =
+        controller.act(CliActMessage::RestoreDefaults, Act::RestoreDefaults, &ram.table, options)?;
     let report = match finished.value {
         Ok(Done::Restored(report)) => *report,
         Ok(_) => return Err(Exit::Failed),
@@ -159,7 +163,7 @@ pub fn reload(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Res
     let question = format!("Load the EEPROM of {} over its RAM?", controller.describe());
     ask::agreed(&question, args.yes, &controller)?;
     let options = controller.write_options();
-    let finished = controller.act("load the settings from EEPROM", Act::Reload, &ram.table, options)?;
+    let finished = controller.act(CoreActMessage::LoadFromEeprom, Act::Reload, &ram.table, options)?;
     let report = match finished.value {
         Ok(Done::Reloaded(report)) => *report,
         Ok(_) => return Err(Exit::Failed),

@@ -12,7 +12,7 @@ use super::args::{Assignment, ImportArgs, UnfinishedArgs, WriteArgs, WriteHow};
 use super::controller::Controller;
 use super::review::{self, Review};
 use super::{ask, keys, memory, profile, read};
-use crate::messages::CliSettingsMessage;
+use crate::messages::{CliActMessage, CliSettingsMessage};
 use crate::{Exit, Interrupt, Output, say};
 use brushwork_core::settings::{Act, Done, counted, fitted, merged, write_options};
 
@@ -257,7 +257,7 @@ fn perform(
     let changes = wanted.changes.clone();
     if !changes.is_empty() {
         let act = Act::Write { wanted: changes, known: Known::default() };
-        let finished = controller.act("write the settings", act, table, options)?;
+        let finished = controller.act(CliActMessage::WriteSettings, act, table, options)?;
         let refused = |why: &str| Err(finished.broken.unwrap_or(Exit::NotTaken).saying(why));
         let report = match finished.value {
             Ok(Done::Written(report, _)) => *report,

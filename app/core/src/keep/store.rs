@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
-use brushwork_link::Failure;
+use crate::messages::CoreRemedyMessage;
 use brushwork_link::settings::replace_file;
+use brushwork_link::{Failure, Message};
 use thiserror::Error;
 
 use super::folder;
@@ -45,10 +46,16 @@ pub enum KeepError {
 
 impl KeepError {
     /// As a failure of an act that needed it.
-    pub fn failure(&self, tried: &str) -> Failure {
-        Failure::new(tried, "this computer", self.to_string().trim_end_matches('.'), "Then try again")
+    pub fn failure(self, tried: impl Into<Message>) -> Failure {
+        let came_back = Message::error(Clause(self));
+        Failure::new(tried, "this computer", came_back, CoreRemedyMessage::ThenTryAgain)
     }
 }
+
+/// The error without its full stop.
+#[derive(Debug, Error)]
+#[error("{}", .0.to_string().trim_end_matches('.'))]
+struct Clause(KeepError);
 
 /// The folder in which everything is kept. Clones are the same folder.
 #[derive(Clone, Debug)]

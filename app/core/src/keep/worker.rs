@@ -1,5 +1,7 @@
 //! The thread that writes files while a controller is worked on.
 
+use crate::messages::{CoreActMessage, CoreCauseMessage, CoreRemedyMessage};
+use brushwork_link::messages::ActMessage;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::thread::{self, JoinHandle};
@@ -119,10 +121,10 @@ impl Keeper for UnitKeeper {
             Ok(Err(failure)) => Some(Err(failure)),
             Err(RecvTimeoutError::Timeout) => None,
             Err(RecvTimeoutError::Disconnected) => Some(Err(Failure::new(
-                "keep a backup",
+                CoreActMessage::KeepBackup,
                 "this computer",
-                "the thread that writes files is busy or gone",
-                "Start the program again",
+                CoreCauseMessage::WriterIsGone,
+                CoreRemedyMessage::StartAgain,
             ))),
         }
     }
@@ -145,8 +147,8 @@ impl Keeper for UnitKeeper {
 fn perform(store: &Store, task: Task) {
     match task {
         Task::Begin { origin, entry, answer } => {
-            let tried = format!("keep a backup before the {}", entry.act.label());
-            let begun = begin(store, &origin, &entry).map_err(|error| error.failure(&tried));
+            let tried = ActMessage::KeepBackup { act: entry.act.label() };
+            let begun = begin(store, &origin, &entry).map_err(|error| error.failure(tried));
             // Whoever asked may have been called off.
             let _ = answer.send(begun);
         }

@@ -5,15 +5,13 @@
 //! Slowing down takes the duty back quickly but not at once: at once would short the motor, which brakes it and gives nothing
 //! back. The motors are stopped by the device thread on every way out.
 
+use crate::messages::{CoreActMessage, CoreCauseMessage, CoreRemedyMessage};
 use std::time::Duration;
 
 use brushwork_link::device::JobContext;
 use brushwork_link::{Drive, DriveCommand, ExchangeError, Failure, Job};
 use brushwork_values::Motor;
 use crossbeam_channel::Sender;
-
-/// Verb phrase of the job.
-const JOB: &str = "test the voltage clamp";
 
 /// The duties of the test, in percent (MCP manual 1.7.5).
 const FIRST_PERCENT: u32 = 25;
@@ -95,7 +93,7 @@ impl Task {
 
 /// The job; each [`Step`] goes to `steps` as it ends, so that an interrupted test leaves what it has found.
 pub fn job(task: Task, steps: Sender<Step>) -> Job<()> {
-    Job::moving(JOB, task.time_limit(), move |context| {
+    Job::moving(CoreActMessage::TestClamp, task.time_limit(), move |context| {
         refuse_torque_control(context, task.motor)?;
         refuse_high_battery(context, &task)?;
         for (index, duty) in duties().enumerate() {
@@ -118,8 +116,8 @@ pub fn job(task: Task, steps: Sender<Step>) -> Job<()> {
 fn refuse_torque_control(context: &mut JobContext<'_>, motor: Motor) -> Result<(), Failure> {
     match context.address().family().readings().is_torque_mode(context, motor) {
         Ok(true) => {
-            let came_back = format!("L and R of {motor} are both set, so that its duty is a current");
-            Err(refusal(context, came_back, "Set L or R to 0 for the test"))
+            let came_back = CoreCauseMessage::TorqueControl { motor };
+            Err(refusal(context, came_back, CoreRemedyMessage::ClearWindingForTest))
         }
         Ok(false) => Ok(()),
         Err(error) => Err(failed(context, &error)),
@@ -131,9 +129,8 @@ fn refuse_high_battery(context: &mut JobContext<'_>, task: &Task) -> Result<(), 
     if volts < task.limit_volts {
         return Ok(());
     }
-    let came_back =
-        format!("the main battery stands at {volts:.1} V, not below the limit of {:.1} V", task.limit_volts);
-    Err(refusal(context, came_back, "Set a limit above the supply"))
+    let came_back = CoreCauseMessage::BatteryTooHigh { volts, limit: task.limit_volts };
+    Err(refusal(context, came_back, CoreRemedyMessage::RaiseLimit))
 }
 
 fn one_step(context: &mut JobContext<'_>, task: &Task, duty: f64) -> Result<Step, Failure> {
@@ -230,12 +227,12 @@ fn come_to_rest(context: &mut JobContext<'_>, motor: Motor) -> Result<(), Failur
     Ok(())
 }
 
-fn refusal(context: &JobContext<'_>, came_back: String, remedy: &str) -> Failure {
-    Failure::new(JOB, context.describe(), came_back, remedy)
+fn refusal(context: &JobContext<'_>, came_back: CoreCauseMessage, remedy: CoreRemedyMessage) -> Failure {
+    Failure::new(CoreActMessage::TestClamp, context.describe(), came_back, remedy)
 }
 
 fn failed(context: &JobContext<'_>, error: &ExchangeError) -> Failure {
-    error.failure(JOB, context.describe())
+    error.failure(CoreActMessage::TestClamp, context.describe())
 }
 
 #[cfg(test)]

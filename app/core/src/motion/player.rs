@@ -3,6 +3,7 @@
 //! The job reads the encoders itself, every few milliseconds, since ten readings a second of the window say little about
 //! a step. A step of duty has no setpoint in the unit of its response, so it is judged against the speed it ends at.
 
+use crate::messages::{CoreActMessage, CoreCauseMessage, CoreRemedyMessage};
 use std::time::Duration;
 
 use brushwork_link::device::JobContext;
@@ -13,9 +14,6 @@ use brushwork_values::Motor;
 use super::profile::{Leg, Mode, WAY_LIMIT, setpoint_text};
 use super::reader::{Encoders, INTERVAL};
 use super::speed::{Reading, present_speed, speeds};
-
-/// Verb phrase of the job.
-const JOB: &str = "play the profile";
 
 /// Beyond what the legs take by themselves: exchanges, and the pace of a slow line.
 const SLACK: Duration = Duration::from_secs(30);
@@ -65,7 +63,7 @@ pub fn job(task: Task) -> Job<Played> {
         Leg::Settle { dwell, .. } | Leg::GoTo { dwell, .. } => *dwell + WAY_LIMIT,
     };
     let limit = task.legs.iter().map(own_time).sum::<Duration>() + SLACK;
-    Job::moving(JOB, limit, move |context| {
+    Job::moving(CoreActMessage::PlayProfile, limit, move |context| {
         let mut player =
             Player { task: task.clone(), encoders: Encoders::default(), record: [const { Vec::new() }; 2] };
         player.play(context)
@@ -153,13 +151,10 @@ impl Player {
         self.watch(context, begun_at + WATCHED)?;
         while !self.task.motors.iter().all(|motor| self.stands(*motor)) {
             if context.now() > begun_at + WAY_LIMIT {
-                let came_back = format!(
-                    "a motor does not come to rest at {} within {} s",
-                    setpoint_text(&command),
-                    WAY_LIMIT.as_secs()
-                );
-                let remedy = "Tune the position loop, or widen its deadzone";
-                return Err(Failure::new(JOB, context.describe(), came_back, remedy));
+                let setpoint = setpoint_text(&command);
+                let came_back = CoreCauseMessage::NotAtRest { setpoint, seconds: WAY_LIMIT.as_secs() };
+                let remedy = CoreRemedyMessage::TuneLoop;
+                return Err(Failure::new(CoreActMessage::PlayProfile, context.describe(), came_back, remedy));
             }
             let soon = context.now() + INTERVAL * 4;
             self.watch(context, soon)?;
@@ -267,22 +262,17 @@ fn mean(points: &[Point]) -> Option<f64> {
 }
 
 fn failed(context: &JobContext<'_>, error: &ExchangeError) -> Failure {
-    error.failure(JOB, context.describe())
+    error.failure(CoreActMessage::PlayProfile, context.describe())
 }
 
 fn lost_way(context: &JobContext<'_>, motor: Motor, counts: f64, is_late: bool) -> Failure {
     let (came_back, remedy) = if is_late {
-        (
-            format!("{motor} did not reach {counts:.0} counts within {} s", WAY_LIMIT.as_secs()),
-            "Go faster, or choose points that are nearer",
-        )
+        let seconds = WAY_LIMIT.as_secs();
+        (CoreCauseMessage::NotReached { motor, counts, seconds }, CoreRemedyMessage::GoFaster)
     } else {
-        (
-            format!("{motor} goes away from {counts:.0} counts"),
-            "Its encoder counts the wrong way: change round the two motor leads, or the encoder's A and B",
-        )
+        (CoreCauseMessage::GoesAway { motor, counts }, CoreRemedyMessage::TurnEncoder)
     };
-    Failure::new(JOB, context.describe(), came_back, remedy)
+    Failure::new(CoreActMessage::PlayProfile, context.describe(), came_back, remedy)
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 //! both directions until its speed has settled, within limits of time and travel. What came of it is a [`Measured`], or a
 //! failure that says what is wrong with the machine.
 
+use crate::messages::{CoreActMessage, CoreCauseMessage, CoreRemedyMessage};
 use std::time::Duration;
 
 use brushwork_link::device::{JobContext, Power};
@@ -12,9 +13,6 @@ use brushwork_values::Motor;
 
 use super::reader::{Encoders, INTERVAL};
 use super::speed::{HeldSpeed, PART_S, Reading, has_settled, held_speed, present_speed};
-
-/// Verb phrase of the job.
-const JOB: &str = "measure QPPS";
 
 /// Duty at which the direction is looked for: it goes up until the motor moves.
 const DIRECTION_DUTY: f64 = 0.30;
@@ -91,7 +89,7 @@ impl Measured {
 pub fn job(task: Task) -> Job<Measured> {
     let ramps = Duration::from_secs_f64(4.0 / task.accel_duty_per_s.max(0.05));
     let limit = (task.time_limit + REST_LIMIT) * 2 + ramps + Duration::from_secs(10);
-    Job::moving(JOB, limit, move |context| {
+    Job::moving(CoreActMessage::MeasureQpps, limit, move |context| {
         let mut bench = Bench { task, encoders: Encoders::default() };
         bench.measure(context)
     })
@@ -127,8 +125,8 @@ impl Bench {
         match context.address().family().readings().is_torque_mode(context, motor) {
             Ok(true) => Err(refusal(
                 context,
-                format!("L and R of {motor} are both set, so that its duty is a current"),
-                "Set L or R to 0 for the measurement",
+                CoreCauseMessage::TorqueControl { motor },
+                CoreRemedyMessage::ClearWinding,
             )),
             Ok(false) => Ok(()),
             Err(error) => Err(failed(context, &error)),
@@ -166,8 +164,8 @@ impl Bench {
     fn wrong_way(&self, context: &JobContext<'_>, duty: f64) -> Failure {
         refusal(
             context,
-            format!("{} counts down at {:.0} % forward duty", self.task.motor, duty * 100.0),
-            "Change round the two motor leads, or the encoder's A and B, not both, and measure again",
+            CoreCauseMessage::CountsDown { motor: self.task.motor, percent: duty * 100.0 },
+            CoreRemedyMessage::ChangeLeads,
         )
     }
 
@@ -178,22 +176,15 @@ impl Bench {
         if full.duty.abs() < DIRECTION_DUTY * HELD_BACK {
             return held_back(context, full.duty / DIRECTION_DUTY);
         }
-        let drew = format!("{motor} counted nothing up to {:.0} % duty and drew", DIRECTION_DUTY * 100.0);
-        if amps < NO_AMPS {
-            let remedy = "Check the motor's leads, its fuse and its power";
-            return refusal(context, format!("{drew} no current"), remedy);
-        }
-        if amps > half.amps.abs() * BLOCKED_RATIO {
-            let remedy = "Free the shaft. If it did turn, check the encoder's plug, supply and pins";
-            return refusal(context, format!("{drew} {amps:.2} A, as a motor does that is blocked"), remedy);
-        }
-        let remedy =
-            "Check the encoder's plug, its supply, and which pins it is assigned to in General Settings";
-        refusal(
-            context,
-            format!("{drew} {amps:.2} A, as a motor does that turns: its encoder is not seen"),
-            remedy,
-        )
+        let percent = DIRECTION_DUTY * 100.0;
+        let (came_back, remedy) = if amps < NO_AMPS {
+            (CoreCauseMessage::NoCurrent { motor, percent }, CoreRemedyMessage::CheckLeads)
+        } else if amps > half.amps.abs() * BLOCKED_RATIO {
+            (CoreCauseMessage::Blocked { motor, percent, amps }, CoreRemedyMessage::FreeShaft)
+        } else {
+            (CoreCauseMessage::EncoderUnseen { motor, percent, amps }, CoreRemedyMessage::CheckEncoder)
+        };
+        refusal(context, came_back, remedy)
     }
 
     /// Runs at full duty until the speed has settled.
@@ -246,24 +237,14 @@ impl Bench {
         begun_at: Duration,
     ) -> Result<(), Failure> {
         let travel = (now.counts - watch.start).abs();
-        let so_far =
-            || format!("its speed had not settled; the highest so far was {:.0} counts/s", watch.best);
+        let best = watch.best;
         if travel > self.task.travel_limit_counts {
-            let came_back = format!(
-                "the travel limit of {:.0} counts was reached and {}",
-                self.task.travel_limit_counts,
-                so_far()
-            );
-            let remedy = "Allow more travel if there is room, or enter an estimated QPPS by hand";
-            return Err(refusal(context, came_back, remedy));
+            let came_back = CoreCauseMessage::TravelUsed { counts: self.task.travel_limit_counts, best };
+            return Err(refusal(context, came_back, CoreRemedyMessage::AllowTravel));
         }
         if context.now() > begun_at + self.task.time_limit {
-            let came_back = format!(
-                "the time limit of {:.0} s was reached and {}",
-                self.task.time_limit.as_secs_f64(),
-                so_far()
-            );
-            return Err(refusal(context, came_back, "Allow more time, or take load off the motor"));
+            let came_back = CoreCauseMessage::TimeUsed { seconds: self.task.time_limit.as_secs_f64(), best };
+            return Err(refusal(context, came_back, CoreRemedyMessage::AllowTime));
         }
         Ok(())
     }
@@ -274,12 +255,9 @@ impl Bench {
         let forward = speed.counts_per_s * duty.signum();
         if watch.best * PART_S > DIRECTION_COUNTS && forward < watch.best * CAUGHT_SHARE {
             let amps = power(context, self.task.motor)?.amps.abs();
-            let came_back = format!(
-                "{} ran at {:.0} counts/s and then counted {forward:.0} counts/s, drawing {amps:.2} A",
-                self.task.motor, watch.best
-            );
-            let remedy = "Look whether the shaft is blocked or the encoder has lost its plug";
-            return Err(refusal(context, came_back, remedy));
+            let (motor, best) = (self.task.motor, watch.best);
+            let came_back = CoreCauseMessage::Caught { motor, best, now: forward, amps };
+            return Err(refusal(context, came_back, CoreRemedyMessage::LookAtShaft));
         }
         watch.best = watch.best.max(forward);
         Ok(())
@@ -327,11 +305,8 @@ struct Watch {
 
 /// `share` of the duty that was asked for is given.
 fn held_back(context: &JobContext<'_>, share: f64) -> Failure {
-    let came_back =
-        format!("the controller gives only {:.0} % of the duty that was asked for", share.abs() * 100.0);
-    let remedy =
-        "A limit of current, voltage or temperature holds it back: see the indicators and General Settings";
-    refusal(context, came_back, remedy)
+    let came_back = CoreCauseMessage::HeldBack { percent: share.abs() * 100.0 };
+    refusal(context, came_back, CoreRemedyMessage::SeeLimits)
 }
 
 fn power(context: &mut JobContext<'_>, motor: Motor) -> Result<Power, Failure> {
@@ -342,12 +317,12 @@ fn pause(context: &mut JobContext<'_>) -> Result<(), Failure> {
     context.sleep(INTERVAL).map_err(|error| failed(context, &error))
 }
 
-fn refusal(context: &JobContext<'_>, came_back: String, remedy: &str) -> Failure {
-    Failure::new(JOB, context.describe(), came_back, remedy)
+fn refusal(context: &JobContext<'_>, came_back: CoreCauseMessage, remedy: CoreRemedyMessage) -> Failure {
+    Failure::new(CoreActMessage::MeasureQpps, context.describe(), came_back, remedy)
 }
 
 fn failed(context: &JobContext<'_>, error: &ExchangeError) -> Failure {
-    error.failure(JOB, context.describe())
+    error.failure(CoreActMessage::MeasureQpps, context.describe())
 }
 
 #[cfg(test)]

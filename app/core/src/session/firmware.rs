@@ -3,13 +3,15 @@
 //! The device thread has let go of the line by then ([`Event::LoaderEntered`](brushwork_link::device::Event::LoaderEntered)). A real unit
 //! comes back as another USB device, so its port is looked for by name; everything else is opened again as it was.
 
+use crate::messages::{CoreActMessage, CoreCauseMessage};
+use brushwork_link::Message;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use brushwork_link::transport::{ConnectTarget, PortInfo, Transport, list_ports};
 use brushwork_link::{Failure, SystemClock};
-use brushwork_mcp_client::firmware::{Image, Progress, Sent, send};
+use brushwork_mcp_client::firmware::{Image, Left, Progress, SendError, Sent, send};
 use crossbeam_channel::{Receiver, Sender, bounded};
 
 use super::{Simulation, connect};
@@ -67,26 +69,24 @@ impl LoaderPlace {
     /// Opens the line to the loader, waiting for it to appear.
     fn open(&self, goes_on: &dyn Fn() -> bool) -> Result<Box<dyn Transport>, Failure> {
         let begun_at = Instant::now();
-        let mut came_back = "no USB device calls itself a loader (…ULDR)".to_owned();
+        let mut came_back = CoreCauseMessage::NoLoader.into();
         while goes_on() && begun_at.elapsed() < APPEAR_LIMIT {
             std::thread::sleep(if self.changes_name { LOOK_INTERVAL } else { RESTART_PAUSE });
             match self.look() {
                 Ok(Some(transport)) => return Ok(transport),
                 Ok(None) => {}
-                Err(sentence) => came_back = sentence,
+                Err(why) => came_back = why,
             }
         }
-        let came_back =
-            if goes_on() { came_back } else { "it was cancelled before anything was erased".to_owned() };
-        let remedy =
-            "Nothing was erased: switch the controller off and on, and it runs its old firmware again";
-        Err(Failure::new("open the line to the firmware loader", self.target.to_string(), came_back, remedy))
+        let came_back = if goes_on() { came_back } else { Message::error(SendError::Cancelled) };
+        let remedy = Left::Untouched.remedy();
+        Err(Failure::new(CoreActMessage::OpenLoader, self.target.to_string(), came_back, remedy))
     }
 
-    fn look(&self) -> Result<Option<Box<dyn Transport>>, String> {
+    fn look(&self) -> Result<Option<Box<dyn Transport>>, Message> {
         let target = match &self.target {
             ConnectTarget::Serial { baud, line, .. } if self.changes_name => {
-                let ports = list_ports().map_err(|failure| failure.to_string())?;
+                let ports = list_ports().map_err(Message::error)?;
                 match loader_port(&ports)? {
                     Some(path) => ConnectTarget::Serial { path, baud: *baud, line: *line },
                     None => return Ok(None),
@@ -99,7 +99,7 @@ impl LoaderPlace {
         };
         connect(&target, self.simulation.clone())
             .map(|(transport, _)| Some(transport))
-            .map_err(|error| error.to_string())
+            .map_err(Message::error)
     }
 }
 
@@ -157,15 +157,14 @@ fn run(
 }
 
 /// The one port that belongs to a loader.
-fn loader_port(ports: &[PortInfo]) -> Result<Option<String>, String> {
+fn loader_port(ports: &[PortInfo]) -> Result<Option<String>, CoreCauseMessage> {
     let mut loaders = ports.iter().filter(|port| port.is_loader());
     let first = loaders.next().map(|port| port.name.clone());
     match loaders.next() {
-        Some(second) => Err(format!(
-            "two loaders are there, {} and {}; unplug the one that is not meant",
-            first.unwrap_or_default(),
-            second.name
-        )),
+        Some(second) => {
+            let (first, second) = (first.unwrap_or_default(), second.name.clone());
+            Err(CoreCauseMessage::TwoLoaders { first, second })
+        }
         None => Ok(first),
     }
 }
@@ -194,9 +193,9 @@ mod tests {
         let controller = port("/dev/ttyACM0", "MCP266 2x60A");
         let loader = port("/dev/ttyACM1", "MCP266ASTULDR");
         let other = port("/dev/ttyACM2", "MCP2160ULDR");
-        assert_eq!(loader_port(std::slice::from_ref(&controller)), Ok(None));
-        assert_eq!(loader_port(&[controller, loader.clone()]), Ok(Some("/dev/ttyACM1".to_owned())));
-        let error = loader_port(&[loader, other]).unwrap_err();
+        assert_eq!(loader_port(std::slice::from_ref(&controller)).unwrap(), None);
+        assert_eq!(loader_port(&[controller, loader.clone()]).unwrap().as_deref(), Some("/dev/ttyACM1"));
+        let error = loader_port(&[loader, other]).unwrap_err().to_string();
         assert!(error.contains("/dev/ttyACM1 and /dev/ttyACM2"), "{error}");
     }
 

@@ -2,12 +2,16 @@
 
 use std::time::Duration;
 
+use crate::messages::CoreActMessage;
 use brushwork_link::device::JobContext;
+use brushwork_link::messages::{ActMessage, settings};
 use brushwork_link::settings::{
     DefaultsReport, Known, SaveReport, WriteError, WriteReport, defaults_kept, read_all, read_some,
     reload_kept, save_kept, write_kept_knowing,
 };
-use brushwork_link::{Failure, Keeper, ReadReport, SettingsImage, SettingsTable, Wire, WriteOptions};
+use brushwork_link::{
+    Failure, Keeper, Message, ReadReport, SettingsImage, SettingsTable, Wire, WriteOptions,
+};
 
 /// Longest time for reading: a serial line of 2400 bit/s takes most of it.
 const READING_LIMIT: Duration = Duration::from_secs(120);
@@ -56,14 +60,16 @@ pub enum Done {
 impl Act {
     /// What it does, for sentences: "write 2 settings".
     #[must_use]
-    pub fn name(&self) -> String {
+    pub fn name(&self) -> Message {
         match self {
-            Self::Read => "read the settings".to_owned(),
-            Self::ReadKeys(keys) => format!("read {}", counted(keys.len())),
-            Self::Reload => "load the settings from EEPROM".to_owned(),
-            Self::Write { wanted, .. } => format!("write {}", counted(wanted.len())),
-            Self::Save => "save the settings to EEPROM".to_owned(),
-            Self::RestoreDefaults => "restore the default settings".to_owned(),
+            Self::Read => ActMessage::ReadSettings.into(),
+            Self::ReadKeys(keys) => CoreActMessage::ReadSome { settings: settings(keys.len()) }.into(),
+            Self::Reload => CoreActMessage::LoadFromEeprom.into(),
+            Self::Write { wanted, .. } => {
+                CoreActMessage::WriteSome { settings: settings(wanted.len()) }.into()
+            }
+            Self::Save => CoreActMessage::SaveToEeprom.into(),
+            Self::RestoreDefaults => CoreActMessage::RestoreDefaults.into(),
         }
     }
 
@@ -115,5 +121,5 @@ impl Act {
 /// "1 setting", "7 settings".
 #[must_use]
 pub fn counted(count: usize) -> String {
-    if count == 1 { "1 setting".to_owned() } else { format!("{count} settings") }
+    settings(count).to_string()
 }

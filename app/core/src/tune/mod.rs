@@ -9,6 +9,8 @@ pub mod file;
 pub mod law;
 pub mod live;
 
+use crate::messages::CoreActMessage;
+use brushwork_family::messages::LoopActMessage;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
@@ -28,15 +30,6 @@ pub use brushwork_family::{Restored, Target};
 use crate::keep::TrialKeeper;
 use law::{Families, Report, Request, Setup, Trial, TrialRequest};
 use live::Live;
-
-/// Verb phrase of the job before a run.
-const PREPARE: &str = "get ready to tune";
-/// Verb phrase of a run.
-const RUN: &str = "tune the motor";
-/// Verb phrase of a trial.
-const TRIAL: &str = "try the gains";
-/// Verb phrase of the job after either.
-const RESTORE: &str = "put back what the tuning changed";
 
 /// What a trial of gains may take.
 const TRIAL_LIMIT: Duration = Duration::from_secs(120);
@@ -74,18 +67,19 @@ pub fn encoder(settings: &dyn Fn(&str) -> Option<SettingValue>, motor: Motor) ->
 /// The job before: keeps backup and journal, reads what is put back afterwards, and shortens the time-out. It moves nothing.
 pub fn prepare(target: Target, subject: Subject, found: &Slot<Setup>, keeper: &TrialKeeper) -> Job<()> {
     let (found, keeper) = (Arc::clone(found), keeper.clone());
-    Job::new(PREPARE, PREPARE_LIMIT, move |context| {
+    Job::new(CoreActMessage::GetReady, PREPARE_LIMIT, move |context| {
         let place = context.describe();
         let is_tried = |key: &str| Families::is_tried(target.motor, key);
         let held = begin_trial(context, subject, &is_tried, &mut **keeper.lock())?;
         let encoder = target.encoder.or_else(|| encoder(&|key| held.image.get(key), target.motor));
         let target = Target { encoder, ..target };
         let mut axis = Families::axis(context, target, true);
-        let setup = thrice(|| axis.read_setup()).map_err(|error| failed("read the loops", &place, &error))?;
+        let setup =
+            thrice(|| axis.read_setup()).map_err(|error| failed(LoopActMessage::Read, &place, &error))?;
         put(&found, setup);
         if setup.stream_timeout_ms.is_some() {
             thrice(|| axis.set_stream_timeout(RUN_STREAM_TIMEOUT_MS))
-                .map_err(|error| failed("set the time-out of the port", &place, &error))?;
+                .map_err(|error| failed(LoopActMessage::SetTimeout, &place, &error))?;
         }
         Ok(())
     })
@@ -96,7 +90,7 @@ pub fn prepare(target: Target, subject: Subject, found: &Slot<Setup>, keeper: &T
 pub fn run(target: Target, request: Request, found: &Slot<Report>, live: &Live) -> Job<()> {
     let (found, live) = (Arc::clone(found), live.clone());
     let limit = Duration::from_secs_f64(request.guard.time_limit_s) + GRACE;
-    Job::moving(RUN, limit, move |context| {
+    Job::moving(CoreActMessage::Tune, limit, move |context| {
         context.set_polling(false);
         // The time-out was set before: changing it now would undermine the arming.
         let mut axis = Families::axis(context, target, false);
@@ -109,7 +103,7 @@ pub fn run(target: Target, request: Request, found: &Slot<Report>, live: &Live) 
 /// Gains tried by themselves. It moves the motor, so it must be armed; what it found is in its slot also after an interruption.
 pub fn trial(target: Target, wanted: TrialRequest, found: &Slot<Trial>, live: &Live) -> Job<()> {
     let (found, live) = (Arc::clone(found), live.clone());
-    Job::moving(TRIAL, TRIAL_LIMIT, move |context| {
+    Job::moving(CoreActMessage::TryGains, TRIAL_LIMIT, move |context| {
         context.set_polling(false);
         let mut axis = Families::axis(context, target, false);
         let trial = run_trial(&mut *axis, &wanted, &mut |entry| live.take(entry));
@@ -141,7 +135,7 @@ pub fn restore(
     let keeper = keeper.clone();
     let keeps = report.filter(|report| report.request.keep && report.verdict != Verdict::Refused);
     let kept = keeps.map(|report| report.proposed).unwrap_or_default();
-    Job::new(RESTORE, RESTORE_LIMIT, move |context| {
+    Job::new(CoreActMessage::PutBack, RESTORE_LIMIT, move |context| {
         let restored = Families::restore(context, target, &before, &kept, leaves_off)?;
         end_act(context, &mut **keeper.lock(), Ending::Known);
         Ok(restored)

@@ -1,5 +1,7 @@
 //! Links as the window opens, brings to the front and ends them.
 
+use crate::messages::{WindowActMessage, WindowRemedyMessage};
+use brushwork_link::Message;
 use brushwork_link::transport::TargetError;
 use brushwork_link::{ConnectTarget, Failure, PollRate, Request};
 use crossbeam_channel::TryRecvError;
@@ -30,8 +32,9 @@ impl App {
         let target = match target {
             Ok(target) => target,
             Err(error) => {
-                let remedy = "Type a path such as /dev/ttyUSB0 or COM3, or tcp:host:port";
-                return self.model.messages.fail(Failure::new("connect", typed, error, remedy).to_string());
+                let (error, remedy) = (Message::error(error), WindowRemedyMessage::TypeTarget);
+                let failure = Failure::new(WindowActMessage::Connect, typed, error, remedy);
+                return self.model.messages.fail(failure.to_string());
             }
         };
         let place = place_of(&target.to_string());

@@ -1,5 +1,7 @@
 //! Programs and scripts, as far as the window's one place for change has to do with them.
 
+use crate::messages::{WindowActMessage, WindowCauseMessage, WindowRemedyMessage};
+use brushwork_link::Message;
 use std::path::Path;
 
 use brushwork_link::{ArmScope, Failure, Request};
@@ -89,8 +91,9 @@ impl App {
         match std::fs::read(path) {
             Ok(bytes) => self.send_image(&bytes, Source { title, text: None }),
             Err(error) => {
-                let remedy = "Check the path and your rights";
-                let failure = Failure::new("read", path.display().to_string(), error, remedy);
+                let (on, error) = (path.display().to_string(), Message::error(error));
+                let remedy = WindowRemedyMessage::CheckPath;
+                let failure = Failure::new(WindowActMessage::ReadFile, on, error, remedy);
                 self.model.messages.fail(failure.to_string());
             }
         }
@@ -100,7 +103,9 @@ impl App {
         let download = match self.model.front.family().download(bytes) {
             Ok(download) => download,
             Err(error) => {
-                let failure = Failure::new("download", source.title, error, "Choose another file");
+                let error = WindowCauseMessage::Said { text: error };
+                let remedy = WindowRemedyMessage::ChooseAnother;
+                let failure = Failure::new(WindowActMessage::Download, source.title, error, remedy);
                 return self.model.messages.fail(failure.to_string());
             }
         };

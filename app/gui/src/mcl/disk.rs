@@ -1,5 +1,7 @@
 //! Programs in files: their encoding and line ends, which are kept, and how a file is written.
 
+use crate::messages::{WindowActMessage, WindowCauseMessage, WindowRemedyMessage};
+use brushwork_link::Message;
 use std::fs::{self, File};
 use std::io::{self, Read as _};
 use std::path::Path;
@@ -181,21 +183,22 @@ const LONGEST_BYTES: u64 = 16 * 1024 * 1024;
 /// # Errors
 /// The file cannot be read, or is far too long.
 pub fn read(path: &Path) -> Result<Loaded, Failure> {
-    let failed = |error: String| {
-        Failure::new("open", path.display().to_string(), error, "Check the path and your rights")
+    let failed = |error: Message| {
+        let on = path.display().to_string();
+        Failure::new(WindowActMessage::OpenFile, on, error, WindowRemedyMessage::CheckPath)
     };
-    let stamp = Stamp::of(path).map_err(|error| failed(error.to_string()))?;
-    let too_long = || failed("it is longer than 16 MB and can be no MCL program".to_owned());
+    let stamp = Stamp::of(path).map_err(|error| failed(Message::error(error)))?;
+    let too_long = || failed(WindowCauseMessage::TooLong.into());
     if stamp.length > LONGEST_BYTES {
         return Err(too_long());
     }
     // A device or a pipe may never end.
     if !fs::metadata(path).is_ok_and(|found| found.is_file()) {
-        return Err(failed("it is no file, but a folder, a device or a pipe".to_owned()));
+        return Err(failed(WindowCauseMessage::NoFile.into()));
     }
     let mut bytes = Vec::new();
     let reading = File::open(path).and_then(|file| file.take(LONGEST_BYTES + 1).read_to_end(&mut bytes));
-    reading.map_err(|error| failed(error.to_string()))?;
+    reading.map_err(|error| failed(Message::error(error)))?;
     if bytes.len() as u64 > LONGEST_BYTES {
         return Err(too_long());
     }
@@ -209,12 +212,8 @@ pub fn read(path: &Path) -> Result<Loaded, Failure> {
 /// The file cannot be written.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<Option<Stamp>, Failure> {
     let failed = |error: io::Error| {
-        Failure::new(
-            "save",
-            path.display().to_string(),
-            error,
-            "Check the free space and your rights, or save it elsewhere",
-        )
+        let (on, error) = (path.display().to_string(), Message::error(error));
+        Failure::new(WindowActMessage::SaveFile, on, error, WindowRemedyMessage::SaveElsewhere)
     };
     replace_file(path, bytes).map_err(failed)?;
     Ok(Stamp::of(path).ok())

@@ -1,5 +1,8 @@
 //! The thread that reads and writes programs, so that the window never waits for a disk.
 
+use crate::messages::{WindowActMessage, WindowCauseMessage, WindowRemedyMessage};
+use brushwork_link::Message;
+use brushwork_link::messages::RemedyMessage;
 use std::path::{Path, PathBuf};
 use std::thread;
 
@@ -101,10 +104,10 @@ impl Files {
         let Some(tasks) = &self.tasks else { return Ok(()) };
         tasks.try_send(task).map_err(|error| {
             let why = match error {
-                TrySendError::Full(_) => "the disk is busy",
-                TrySendError::Disconnected(_) => "the system gave no thread for it",
+                TrySendError::Full(_) => WindowCauseMessage::DiskIsBusy,
+                TrySendError::Disconnected(_) => WindowCauseMessage::NoThread,
             };
-            Failure::new("use the disk", "this computer", why, "Try again")
+            Failure::new(WindowActMessage::UseDisk, "this computer", why, RemedyMessage::TryAgain)
         })
     }
 
@@ -175,9 +178,9 @@ fn keep(task: Task, journal: &mut Journal) -> Option<Done> {
     match task {
         Task::Keep(id, kept) => {
             let failed = journal.keep(id, &kept).err()?;
-            let remedy = "Save it to a file now and then";
+            let (failed, remedy) = (Message::error(failed), WindowRemedyMessage::SaveNowAndThen);
             return Some(Done::NotKept(Failure::new(
-                "keep unsaved text against a crash",
+                WindowActMessage::KeepUnsaved,
                 kept.title,
                 failed,
                 remedy,

@@ -1,5 +1,7 @@
 //! Pages to the system's printer, by its print command: `lp` or `lpr`. Where there is neither, pages go to a PDF file alone.
 
+use crate::messages::{WindowActMessage, WindowCauseMessage, WindowRemedyMessage};
+use brushwork_link::messages::RemedyMessage;
 use std::ffi::OsStr;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -40,8 +42,9 @@ impl Spooler {
     fn print(&self, job: &Job) -> Result<(), Failure> {
         let on = if job.printer.is_empty() { "the system's printer" } else { &job.printer };
         let failed = |why: String| {
-            let remedy = "See that a printer is set up, or print to a PDF file";
-            Err(Failure::new(format!("print {}", job.title), on, why, remedy))
+            let tried = WindowActMessage::Print { title: job.title.clone() };
+            let why = WindowCauseMessage::Said { text: why };
+            Err(Failure::new(tried, on, why, WindowRemedyMessage::SetUpPrinter))
         };
         let mut command = Command::new(&self.program);
         command.args([if self.is_lp { "-t" } else { "-J" }, &job.title]);
@@ -112,10 +115,10 @@ impl Printing {
     pub fn begin(&self, spooler: Spooler, job: Job, tell: impl Fn() + Send + 'static) {
         let sender = self.sender.clone();
         let refused = Failure::new(
-            format!("print {}", job.title),
+            WindowActMessage::Print { title: job.title.clone() },
             "this computer",
-            "the system gave no thread for it",
-            "Try again",
+            WindowCauseMessage::NoThread,
+            RemedyMessage::TryAgain,
         );
         let work = move || {
             let done = spooler.print(&job).map(|()| format!("{} is with the printer.", job.title));

@@ -308,6 +308,8 @@ pub fn clock_text(time: Duration) -> String {
 mod tests {
     use super::*;
     use brushwork_link::Failure;
+    use brushwork_link::Message;
+    use brushwork_link::messages::{ActMessage, CauseMessage};
     use brushwork_mcp_client::indicators::indicators;
     use brushwork_mcp_wire::packet_serial::Generation;
     use brushwork_mcp_wire::packet_serial::status::{Condition, encode};
@@ -365,7 +367,13 @@ mod tests {
     fn the_history_is_bounded_and_says_how_much_is_gone() {
         let mut history = History::default();
         for number in 0..KEPT + 50 {
-            history.note(&Event::Failure(Failure::new("read", "0x80", number.to_string(), "Wait")));
+            let came_back = CauseMessage::StopUnconfirmed { seconds: number as u64 };
+            history.note(&Event::Failure(Failure::new(
+                ActMessage::Move,
+                "0x80",
+                came_back,
+                Message::default(),
+            )));
         }
         assert_eq!((history.len(), history.dropped), (KEPT, 50));
         assert_eq!(history.counts().next().map(|(.., count)| count), Some(KEPT as u32 + 50));

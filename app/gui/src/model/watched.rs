@@ -1,5 +1,6 @@
 //! A job that was asked for, followed by the device thread's events until it ends.
 
+use brushwork_link::Message;
 use brushwork_link::{Event, Interruption, Job, JobEnding, JobTicket, QueuedJob};
 
 use super::{Effect, Gravity};
@@ -90,7 +91,7 @@ impl<T> Watched<T> {
     }
 }
 
-fn unfinished<T>(name: &str, ending: &JobEnding<T>) -> Unfinished {
+fn unfinished<T>(name: &Message, ending: &JobEnding<T>) -> Unfinished {
     let (gravity, sentence) = match ending {
         JobEnding::Done(_) => (Gravity::Note, String::new()),
         JobEnding::Failed(failure) => (Gravity::Error, failure.to_string()),
@@ -133,16 +134,23 @@ mod tests {
     use std::time::Duration;
 
     use brushwork_link::device::{JobId, JobReport};
+    use brushwork_link::messages::ActMessage;
 
     use super::*;
 
     fn job() -> Job<u8> {
-        Job::new("try the motor", Duration::from_secs(1), |_| Ok(42))
+        Job::new(ActMessage::Move, Duration::from_secs(1), |_| Ok(42))
     }
 
     fn ended(id: JobId, ending: JobEnding) -> Event {
         let ran_for = Duration::from_secs(1);
-        Event::JobEnded(JobReport { id, name: String::new(), ran_for, ending, motors_stopped: Some(true) })
+        Event::JobEnded(JobReport {
+            id,
+            name: Message::default(),
+            ran_for,
+            ending,
+            motors_stopped: Some(true),
+        })
     }
 
     #[test]
@@ -168,7 +176,7 @@ mod tests {
         let mut watched = Watched::default();
         let id = watched.begin(job()).unwrap().id();
         let reported = watched.take_result(ended(id, JobEnding::Interrupted(Interruption::Stop)));
-        let sentence = "Did not try the motor to the end: Stop was pressed. The motors were stopped.";
+        let sentence = "Did not move the motors to the end: Stop was pressed. The motors were stopped.";
         let unfinished = Unfinished { gravity: Gravity::Warning, sentence: sentence.to_owned() };
         assert_eq!(reported, Some(Err(unfinished)));
     }

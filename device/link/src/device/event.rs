@@ -92,7 +92,7 @@ pub enum Event {
         /// Which.
         id: JobId,
         /// Its name, for people.
-        name: String,
+        name: Message,
     },
     /// A job tells how far it is.
     JobProgress {

@@ -6,6 +6,8 @@ use super::options::{Addresses, DeviceOptions};
 use super::stop::StopBytes;
 use crate::failure::Failure;
 use crate::family::{FamilyChoice, FamilyRef, families};
+use crate::messages::{ActMessage, CauseMessage, RemedyMessage};
+use brushwork_values::Message;
 
 /// Whichever family the link turns out to have.
 pub struct AnyFamily {
@@ -44,12 +46,8 @@ impl Search for AnyFamily {
             }
         }
         let nothing = nothing.unwrap_or_else(|| {
-            Failure::new(
-                "find a controller",
-                line.exchange().port(),
-                "this program has no family of controllers",
-                "",
-            )
+            let port = line.exchange().port();
+            Failure::new(ActMessage::FindController, port, CauseMessage::NoFamily, Message::default())
         });
         Err(DiscoverError::NothingThere(self.with_the_others(nothing, &candidates)))
     }
@@ -96,7 +94,8 @@ impl AnyFamily {
     /// The failure of the first family, with where the others may be found all the same.
     fn with_the_others(&self, nothing: Failure, candidates: &[usize]) -> Failure {
         let others = candidates.iter().skip(1).filter_map(|index| self.searches[*index].0.may_be_elsewhere());
-        let remedy = others.fold(nothing.remedy, |remedy, other| format!("{remedy}. {other}"));
+        let remedy =
+            others.fold(nothing.remedy, |remedy, other| RemedyMessage::OrElsewhere { remedy, other }.into());
         Failure { remedy, ..nothing }
     }
 }

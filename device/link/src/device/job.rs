@@ -2,6 +2,8 @@
 
 use crate::exchange::Interruption;
 use crate::failure::Failure;
+use crate::messages::{CauseMessage, RemedyMessage};
+use brushwork_values::Message;
 use crossbeam_channel::{Receiver, TryRecvError, bounded};
 use std::fmt;
 use std::sync::Arc;
@@ -35,7 +37,7 @@ impl<T: Send + 'static> Job<T> {
     ///
     /// Errors of the context should be passed on at once: after an interruption each further call of the context fails too.
     pub fn new(
-        name: impl Into<String>,
+        name: impl Into<Message>,
         time_limit: Duration,
         mut work: impl FnMut(&mut JobContext<'_>) -> Result<T, Failure> + Send + 'static,
     ) -> Self {
@@ -55,7 +57,7 @@ impl<T: Send + 'static> Job<T> {
     /// A job that sets motors in motion. It is refused unless something is armed, and it ends with the motors stopped and
     /// disarmed, whatever its way out.
     pub fn moving(
-        name: impl Into<String>,
+        name: impl Into<Message>,
         time_limit: Duration,
         work: impl FnMut(&mut JobContext<'_>) -> Result<T, Failure> + Send + 'static,
     ) -> Self {
@@ -81,7 +83,7 @@ type Work = dyn FnMut(&mut JobContext<'_>) -> Result<(), Failure> + Send;
 /// A job as the device thread runs it. What it gives goes to its ticket, so that jobs of any result are of one type here.
 pub struct QueuedJob {
     pub(super) id: JobId,
-    pub(super) name: String,
+    pub(super) name: Message,
     pub(super) time_limit: Duration,
     pub(super) moves_motors: bool,
     pub(super) cancelled: Arc<AtomicBool>,
@@ -106,7 +108,7 @@ impl fmt::Debug for QueuedJob {
 #[derive(Debug)]
 pub struct JobTicket<T> {
     id: JobId,
-    name: String,
+    name: Message,
     cancelled: Arc<AtomicBool>,
     result: Receiver<T>,
 }
@@ -120,7 +122,7 @@ impl<T> JobTicket<T> {
 
     /// What it does, as a verb phrase.
     #[must_use]
-    pub fn name(&self) -> &str {
+    pub fn name(&self) -> &Message {
         &self.name
     }
 
@@ -151,9 +153,12 @@ impl<T> JobTicket<T> {
         match ending {
             JobEnding::Done(()) => match self.take() {
                 Some(value) => JobEnding::Done(value),
-                None => {
-                    JobEnding::Failed(Failure::new(&self.name, "", "it ended without a result", "Try again"))
-                }
+                None => JobEnding::Failed(Failure::new(
+                    self.name.clone(),
+                    "",
+                    CauseMessage::NoResult,
+                    RemedyMessage::TryAgain,
+                )),
             },
             JobEnding::Interrupted(cause) => JobEnding::Interrupted(cause),
             JobEnding::Failed(failure) => JobEnding::Failed(failure),
@@ -191,7 +196,7 @@ pub struct JobReport {
     /// Which.
     pub id: JobId,
     /// Its name, for people.
-    pub name: String,
+    pub name: Message,
     /// How long it ran.
     pub ran_for: Duration,
     /// How it ended.

@@ -2,8 +2,10 @@
 
 use super::watch::Interruption;
 use crate::failure::Failure;
+use crate::messages::RemedyMessage;
 use crate::transport::TransportError;
 use crate::unit::FirmwareGeneration;
+use brushwork_values::Message;
 use std::time::Duration;
 
 /// Why a request has no reply that could be used.
@@ -192,37 +194,41 @@ impl ExchangeError {
 
     /// What the user can do about it.
     #[must_use]
-    pub fn remedy(&self) -> &'static str {
+    pub fn remedy(&self) -> RemedyMessage {
         match self {
-            Self::TimedOut { heard: 0, .. } => {
-                "Check the controller's power, the wiring, the baud rate and the address"
-            }
+            Self::TimedOut { heard: 0, .. } => RemedyMessage::CheckWiring,
             Self::TimedOut { .. }
             | Self::BadCrc { .. }
             | Self::BadAcknowledgement { .. }
-            | Self::Malformed { .. } => {
-                "Check the baud rate, the wiring and ground, and that no two units share an address"
-            }
-            Self::MayHaveRun { .. } => "Look where the motor stands before you send it again",
-            Self::Interrupted { .. } => "Try again when you are ready",
-            Self::NotArmed { .. } => "Arm the motors on this screen first",
-            Self::Unproven { .. } => "Try it on a simulated controller",
-            Self::Unsupported { .. } | Self::Absent { .. } => {
-                "Do without it, or check the firmware's version"
-            }
-            Self::Refused { .. } => "Check the value and the state of the controller",
-            Self::Impossible { .. } => "Ask for something else",
-            Self::Encode { .. } => "Use a value in range",
-            Self::Transport { .. } => "Check the cable and connect again",
+            | Self::Malformed { .. } => RemedyMessage::CheckLine,
+            Self::MayHaveRun { .. } => RemedyMessage::LookAtMotor,
+            Self::Interrupted { .. } => RemedyMessage::TryWhenReady,
+            Self::NotArmed { .. } => RemedyMessage::ArmFirst,
+            Self::Unproven { .. } => RemedyMessage::TrySimulated,
+            Self::Unsupported { .. } | Self::Absent { .. } => RemedyMessage::DoWithout,
+            Self::Refused { .. } => RemedyMessage::CheckValue,
+            Self::Impossible { .. } => RemedyMessage::AskOtherwise,
+            Self::Encode { .. } => RemedyMessage::StayInRange,
+            Self::Transport { .. } => RemedyMessage::CheckCable,
         }
     }
 
     /// The failure for the user, with what was tried and on what.
     #[must_use]
-    pub fn failure(&self, tried: impl Into<String>, on: impl Into<String>) -> Failure {
-        Failure::new(tried, on, self.full(), self.remedy())
+    pub fn failure(&self, tried: impl Into<Message>, on: impl Into<String>) -> Failure {
+        Failure::new(tried, on, self.message(), self.remedy())
+    }
+
+    /// The error with its causes as a message.
+    #[must_use]
+    pub fn message(&self) -> Message {
+        Message::error(WithCauses(self.clone()))
     }
 }
+
+#[derive(Debug, thiserror::Error)]
+#[error("{}", .0.full())]
+struct WithCauses(ExchangeError);
 
 const MAY_HAVE_RUN: &str = "the command may have been carried out";
 

@@ -14,8 +14,10 @@ use super::subject::Subject;
 use super::table::SettingsTable;
 use crate::exchange::ExchangeError;
 use crate::failure::Failure;
+use crate::messages::{CauseMessage, RemedyMessage};
 use crate::unit::UnitAddress;
 use crate::wire::Wire;
+use brushwork_values::Message;
 
 /// How long a unit may take to answer again after it wrote its memory. Public clients wait 3 s.
 const RESTART_LIMIT: Duration = Duration::from_secs(6);
@@ -84,8 +86,9 @@ pub fn restore_defaults(wire: &mut dyn Wire, subject: Subject) -> Result<Default
 }
 
 /// Waits until the unit answers again.
-pub fn await_unit(wire: &mut dyn Wire, tried: &str) -> Result<(), Failure> {
-    let describe = |error: &ExchangeError, wire: &dyn Wire| error.failure(tried, wire.describe());
+pub fn await_unit(wire: &mut dyn Wire, tried: impl Into<Message>) -> Result<(), Failure> {
+    let tried = tried.into();
+    let describe = |error: &ExchangeError, wire: &dyn Wire| error.failure(tried.clone(), wire.describe());
     let end = wire.now() + RESTART_LIMIT;
     wire.sleep(SETTLE_TIME).map_err(|error| describe(&error, wire))?;
     loop {
@@ -93,14 +96,8 @@ pub fn await_unit(wire: &mut dyn Wire, tried: &str) -> Result<(), Failure> {
             return Ok(());
         }
         if wire.now() >= end {
-            let waited = format!("no answer for {} s afterwards", RESTART_LIMIT.as_secs());
-            return Err(Failure::new(
-                tried,
-                wire.describe(),
-                waited,
-                "Check its power; if it was given another address and that was not saved, look for it at \
-                 the old one",
-            ));
+            let waited = CauseMessage::NoAnswerAfterwards { seconds: RESTART_LIMIT.as_secs() };
+            return Err(Failure::new(tried, wire.describe(), waited, RemedyMessage::CheckPowerAndAddress));
         }
         wire.sleep(ASK_AGAIN).map_err(|error| describe(&error, wire))?;
     }

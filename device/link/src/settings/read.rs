@@ -12,6 +12,7 @@ use super::table::SettingsTable;
 use crate::exchange::ExchangeError;
 use crate::failure::Failure;
 use crate::family::FamilyRef;
+use crate::messages::{ActMessage, CauseMessage, RemedyMessage};
 use crate::wire::Wire;
 
 /// After this many commands in a row without any answer, and none answered before, the controller counts as
@@ -74,7 +75,7 @@ pub fn read_all(wire: &mut dyn Wire, subject: Subject) -> Result<ReadReport, Fai
 pub fn read_some(wire: &mut dyn Wire, table: &SettingsTable, keys: &[String]) -> Result<ReadReport, Failure> {
     let rows: Vec<&Row> = keys.iter().filter_map(|key| table.row(key)).collect();
     let reading =
-        read_rows(wire, &rows).map_err(|error| error.failure("read the settings", wire.describe()))?;
+        read_rows(wire, &rows).map_err(|error| error.failure(ActMessage::ReadSettings, wire.describe()))?;
     let Reading { image, failures, transactions } = reading;
     Ok(ReadReport { table: table.clone(), image, failures, transactions })
 }
@@ -227,7 +228,7 @@ impl<'w> Reader<'w> {
     }
 
     fn gave_up(&self, error: &ExchangeError) -> Failure {
-        error.failure("read the settings", self.wire.describe())
+        error.failure(ActMessage::ReadSettings, self.wire.describe())
     }
 }
 
@@ -240,7 +241,7 @@ struct Failures {
 
 impl Failures {
     fn no_reply(&mut self, command: u8, row: &Row, error: &ExchangeError) {
-        let failure = || error.failure(self.family.settings().read_phrase(command), &self.on);
+        let failure = || error.failure(self.read(command), &self.on);
         let failure = if self.knows(command) { None } else { Some(failure()) };
         self.add(command, row, failure, matches!(error, ExchangeError::Absent { .. }));
     }
@@ -248,13 +249,17 @@ impl Failures {
     fn incomplete(&mut self, command: u8, row: &Row) {
         let failure = (!self.knows(command)).then(|| {
             Failure::new(
-                self.family.settings().read_phrase(command),
+                self.read(command),
                 &self.on,
-                "the reply does not hold everything that this generation returns",
-                "Check which firmware the controller has",
+                CauseMessage::ReplyTooShort,
+                RemedyMessage::CheckFirmware,
             )
         });
         self.add(command, row, failure, false);
+    }
+
+    fn read(&self, command: u8) -> ActMessage {
+        ActMessage::Read { phrase: self.family.settings().read_phrase(command) }
     }
 
     fn knows(&self, command: u8) -> bool {

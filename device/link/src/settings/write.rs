@@ -16,7 +16,7 @@ use super::value::SettingValue;
 use super::write_report::{RowOutcome, RowState, WriteReport};
 use crate::exchange::ExchangeError;
 use crate::failure::Failure;
-use crate::messages::WriteMessage;
+use crate::messages::{ActMessage, WriteMessage};
 use crate::unit::UnitAddress;
 use crate::wire::Wire;
 use brushwork_values::Message;
@@ -59,7 +59,7 @@ pub fn write(
     let keys: Vec<&str> = wanted.iter().map(|(key, _)| key).collect();
     let involved = rows_involved(table, &keys);
     let before = read_rows(wire, &involved).map_err(|error| WriteError::NotRead {
-        failure: error.failure("read the settings first", wire.describe()),
+        failure: error.failure(ActMessage::ReadSettingsFirst, wire.describe()),
     })?;
     let settled: SettingsImage =
         wanted.iter().map(|(key, value)| (key.to_owned(), settle(table, key, value))).collect();
@@ -174,7 +174,7 @@ impl Writer<'_> {
 
     /// A command that failed: its rows are told; the rest goes on only if the controller still answers.
     fn note_fault(&mut self, step: &Step, error: &ExchangeError) {
-        let failure = error.failure(format!("write {}", step.title()), self.wire.describe());
+        let failure = error.failure(ActMessage::Write { what: step.title() }, self.wire.describe());
         self.faults.extend(step.keys.iter().map(|key| (key.clone(), failure.message())));
         if is_final(error) || (step.stage < Stage::Address && !self.still_answers()) {
             self.ended = Some(failure);
@@ -229,7 +229,7 @@ impl Writer<'_> {
                 ReadBack { image: reading.image, why }
             }
             Err(error) => {
-                let failure = error.failure("read the settings back", self.wire.describe());
+                let failure = error.failure(ActMessage::ReadSettingsBack, self.wire.describe());
                 let why = Some(failure.message());
                 self.ended.get_or_insert(failure);
                 ReadBack { image: SettingsImage::default(), why }
@@ -260,7 +260,7 @@ impl Writer<'_> {
                 found.why = found.why.take().or(why);
             }
             Err(error) => {
-                let failure = error.failure("read the settings back", self.wire.describe());
+                let failure = error.failure(ActMessage::ReadSettingsBack, self.wire.describe());
                 found.why.get_or_insert(failure.message());
                 self.ended.get_or_insert(failure);
             }

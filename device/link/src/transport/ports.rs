@@ -5,6 +5,8 @@ pub use super::port_info::PortInfo;
 use super::available;
 use super::stream::Stream;
 use crate::failure::Failure;
+use crate::messages::{ActMessage, CauseMessage, RemedyMessage};
+use brushwork_values::Message;
 use std::panic;
 use std::path::Path;
 
@@ -14,16 +16,15 @@ pub fn list_ports() -> Result<Vec<PortInfo>, Failure> {
     if cfg!(target_os = "linux") && !Path::new("/sys/class/tty").is_dir() {
         return Ok(Vec::new());
     }
-    let failure = |came_back: &str| {
-        Failure::new("list the serial ports", "", came_back, "Type the path of the port instead")
-    };
+    let failure =
+        |came_back: Message| Failure::new(ActMessage::ListPorts, "", came_back, RemedyMessage::TypePath);
     match panic::catch_unwind(available::listed) {
         Ok(Ok(mut ports)) => {
             ports.sort_by(|a, b| a.name.cmp(&b.name));
             Ok(ports)
         }
-        Ok(Err(error)) => Err(failure(&error.to_string())),
-        Err(_) => Err(failure("the system's list cannot be read")),
+        Ok(Err(error)) => Err(failure(Message::error(error))),
+        Err(_) => Err(failure(CauseMessage::ListUnreadable.into())),
     }
 }
 

@@ -1,6 +1,7 @@
 //! The loops of an MCP or RoboClaw over the device thread.
 
 use crate::encoder;
+use brushwork_family::messages::LoopActMessage;
 use brushwork_family::tuned::{Registers, Restored, Target, Tuned, failed, reported, thrice};
 use brushwork_link::device::JobContext;
 use brushwork_link::settings::SettingValue;
@@ -136,31 +137,31 @@ impl Tuned for McpTuned {
         };
         let mut axis = Self::axis(context, target, true);
         let now =
-            thrice(|| axis.read_setup()).map_err(|error| failed("read the loops back", &place, &error))?;
+            thrice(|| axis.read_setup()).map_err(|error| failed(LoopActMessage::ReadBack, &place, &error))?;
         put_loops_back(&mut *axis, &now.held, &loops)
-            .map_err(|error| failed("write the loops back", &place, &error))?;
+            .map_err(|error| failed(LoopActMessage::WriteBack, &place, &error))?;
         if (now.max_current_raw, now.min_current_raw) != (before.max_current_raw, before.min_current_raw) {
             thrice(|| axis.write_current_limits(before.max_current_raw, before.min_current_raw))
-                .map_err(|error| failed("put the current limit back", &place, &error))?;
+                .map_err(|error| failed(LoopActMessage::PutCurrentLimitBack, &place, &error))?;
         }
         if now.inductance_resistance_raw != before.inductance_resistance_raw {
             wait_for_rest(&mut *axis);
             thrice(|| axis.write_winding(before.inductance_resistance_raw))
-                .map_err(|error| failed("put inductance and resistance back", &place, &error))?;
+                .map_err(|error| failed(LoopActMessage::PutWindingBack, &place, &error))?;
         }
         if let Some(timeout_ms) = before.stream_timeout_ms {
             thrice(|| axis.set_stream_timeout(timeout_ms))
-                .map_err(|error| failed("set the time-out of the port back", &place, &error))?;
+                .map_err(|error| failed(LoopActMessage::SetTimeoutBack, &place, &error))?;
         }
         let held =
-            thrice(|| axis.read_setup()).map_err(|error| failed("read the loops back", &place, &error))?;
+            thrice(|| axis.read_setup()).map_err(|error| failed(LoopActMessage::ReadBack, &place, &error))?;
         if held.held != loops
             || held.max_current_raw != before.max_current_raw
             || held.inductance_resistance_raw != before.inductance_resistance_raw
             || (before.stream_timeout_ms.is_some() && held.stream_timeout_ms != before.stream_timeout_ms)
         {
             let error = AxisError::Refused("settings that read otherwise than they were written".into());
-            return Err(failed("put the loops back", &place, &error));
+            return Err(failed(LoopActMessage::PutBack, &place, &error));
         }
         Ok(Restored::default())
     }

@@ -1,6 +1,8 @@
 //! What this family says to people, in its words: one table for each theme.
 
+use brushwork_link::Message;
 use brushwork_link::unit::UnitAddress;
+use brushwork_motion_mind_wire::Mode;
 use brushwork_values::messages;
 
 messages! {
@@ -34,5 +36,50 @@ messages! {
         UnknownMode { number: i64 } "It says that its mode is {number}, which the manual does not have.",
         LoopIsOff "The output of its loop is switched off (DISABLEPID in FUNCTION); a stop or a run that was cut short may have left it so. Arming, or `drive`, switches it on again: the motor is then held where it stands.",
         Loose "It answers the read of all registers and no other: a simulator, whose values are shown as they come.",
+    }
+}
+
+messages! {
+    /// What is tried, as a bare verb phrase.
+    pub enum MotionMindActMessage {
+        Arm "arm the motor",
+        Stop "stop the motor",
+        Store { register: &'static str } "store {register} in EEPROM",
+        Reload "load the settings from EEPROM (RESET)",
+        Restore "restore the factory values (RESTORE)",
+    }
+}
+
+messages! {
+    /// What came back of what was tried, as a clause.
+    pub enum MotionMindCauseMessage {
+        NothingAnswered { asked: Message } "nothing answered at {asked}, in binary or in ASCII",
+        BytesCame { count: u64, asked: Message } "{count} bytes came, but no Motion Mind, from {asked}",
+        AllAddresses "addresses 1 to 98",
+        Address { address: u8 } "address {address}",
+        NotAtRest "its drive is not 0",
+        NoAnswerAfterwards "no answer afterwards, neither at its address nor at 1",
+        LoopMoves "its loop is switched off (DISABLEPID in FUNCTION), and the motor does not stand still when it is switched on",
+        OtherMode { now: i64, found: Mode } "it is in mode {now} now and was in {found} when it was found",
+        AnalogSetpoint "in mode 5 its setpoint is the analog input",
+        Takes { mode: Mode, taken: &'static str } "in {mode} it takes {taken}",
+        Braked "its brake input is at ground",
+        TooHot "it is too hot; its bridge is off",
+    }
+}
+
+messages! {
+    /// What to do, as a sentence without its full stop.
+    pub enum MotionMindRemedyMessage {
+        CutPower "Cut the motor power now: the motor may still be running",
+        CheckPowerAndPort "Check that the controller has power, that the cable and the port are right, and the baud rate: 9600 or 19200 by switch 5, or what FUNCTION2 was set to",
+        CheckBaudRate "Check the baud rate: 9600 or 19200 by switch 5, or what FUNCTION2 was set to",
+        CheckPower "Check its power and connect again",
+        LowerGains "See that nothing turns the motor, and lower PTERM and ITERM",
+        ConnectAgain "Connect again",
+        SetAdserial "Set ADSERIAL in FUNCTION, so that the setpoint comes over the serial line",
+        SetSwitches "Set switches 2 to 4 for mode 3 or 4, and switch the power off and on",
+        ReleaseBrake "Release the brake input, J4 pin 12",
+        CoolDown "Let it cool down below 80 °C",
     }
 }

@@ -1,5 +1,6 @@
 //! The loop of a Motion Mind over the device thread.
 
+use brushwork_family::messages::LoopActMessage;
 use brushwork_family::tuned::{OtherTuned, Registers, Restored, Target, Tuned, failed, reported, thrice};
 use brushwork_link::Failure;
 use brushwork_link::device::JobContext;
@@ -192,7 +193,7 @@ impl Tuned for MotionMindTuned {
         let mut axis = MindAxis::new(MindJobCarrier::new(context));
         let put_back = thrice(|| axis.write_current_limits(before.max_current_raw, 0))
             .and_then(|()| thrice(|| axis.put_back(registers, leaves_off)))
-            .map_err(|error| failed("write the registers back", &place, &error))?;
+            .map_err(|error| failed(LoopActMessage::WriteRegistersBack, &place, &error))?;
         Ok(Restored { loop_left_off: put_back == LoopAfter::LeftOff })
     }
 }

@@ -242,6 +242,10 @@ brushwork_values::messages! {
     /// What the family says.
     pub enum EchoMessage {
         SpeedsAlone "it takes speeds alone",
+        Save "save",
+        Reload "reload",
+        Restore "restore the defaults",
+        NoMemory "it has no memory",
     }
 }
 
@@ -486,14 +490,14 @@ impl FamilySettings for EchoSettings {
     }
 
     fn save(&self, wire: &mut dyn Wire, _: &ReadReport, _: WriteOptions) -> Result<SaveReport, Failure> {
-        Err(Failure::new("save", wire.describe(), "it has no memory", ""))
+        Err(Failure::new(EchoMessage::Save, wire.describe(), EchoMessage::NoMemory, Message::default()))
     }
 
     fn reload(&self, wire: &mut dyn Wire) -> Result<(), Failure> {
-        Err(Failure::new("reload", wire.describe(), "it has no memory", ""))
+        Err(Failure::new(EchoMessage::Reload, wire.describe(), EchoMessage::NoMemory, Message::default()))
     }
 
     fn restore(&self, wire: &mut dyn Wire) -> Result<(), Failure> {
-        Err(Failure::new("restore the defaults", wire.describe(), "it has no memory", ""))
+        Err(Failure::new(EchoMessage::Restore, wire.describe(), EchoMessage::NoMemory, Message::default()))
     }
 }

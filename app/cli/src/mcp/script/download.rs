@@ -3,7 +3,8 @@
 use std::path::Path;
 use std::time::Duration;
 
-use brushwork_mcp_client::script::{DOWNLOAD_JOB, Downloaded, Origin, ScriptImage, Verified, download};
+use brushwork_mcp_client::messages::McpActMessage;
+use brushwork_mcp_client::script::{Downloaded, Origin, ScriptImage, Verified, download};
 use brushwork_script::diagnostic::Severity;
 use brushwork_script::image;
 use serde_json::json;
@@ -58,7 +59,7 @@ pub fn to_controller(
 ) -> Result<Downloaded, Exit> {
     let is_refused =
         image.origin() == Origin::Own && !controller.identity().simulated && !simulated_elsewhere;
-    let finished = controller.run(DOWNLOAD_JOB, LIMIT, move |wire| {
+    let finished = controller.run(McpActMessage::DownloadScript, LIMIT, move |wire| {
         let is_simulated = wire.is_simulated() || simulated_elsewhere;
         download(wire, &image, is_simulated)
     })?;

@@ -4,7 +4,8 @@ use std::time::Duration;
 
 use brushwork_link::settings::{Ending, begin_command, end_act};
 use brushwork_link::{ExchangeError, Failure, Wire};
-use brushwork_mcp_client::script::{AUTORUN_JOB, Autorun, read_autorun, set_autorun};
+use brushwork_mcp_client::messages::McpActMessage;
+use brushwork_mcp_client::script::{Autorun, read_autorun, set_autorun};
 use brushwork_plant::world::{ScriptRun, ScriptView};
 use serde_json::json;
 
@@ -25,7 +26,7 @@ pub fn autorun(args: &AutorunArgs, out: &mut Output, interrupt: &Interrupt) -> R
     let controller = Controller::connect(&args.connect, interrupt)?;
     let wanted = args.delay;
     let (subject, mut keeper) = (controller.subject, controller.keeper());
-    let finished = controller.run(AUTORUN_JOB, SETTING_LIMIT, move |wire| {
+    let finished = controller.run(McpActMessage::SetAutorun, SETTING_LIMIT, move |wire| {
         if let Some(delay) = wanted {
             begin_command(wire, subject, false, &mut *keeper)?;
             let set = set_autorun(wire, delay.0);
@@ -49,7 +50,7 @@ pub fn autorun(args: &AutorunArgs, out: &mut Output, interrupt: &Interrupt) -> R
 /// Tells what is known of the script.
 pub fn status(args: &StatusArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let controller = Controller::connect(&args.connect, interrupt)?;
-    let finished = controller.run("read the script's autorun", LIMIT, move |wire| {
+    let finished = controller.run(McpActMessage::ReadAutorun, LIMIT, move |wire| {
         read_autorun(wire).map_err(|error| failure(&error, wire))
     })?;
     let autorun = value_of(finished)?;
@@ -96,7 +97,7 @@ fn milliseconds(autorun: Autorun) -> Option<u64> {
 }
 
 fn failure(error: &ExchangeError, wire: &dyn Wire) -> Failure {
-    error.failure(AUTORUN_JOB, wire.describe())
+    error.failure(McpActMessage::SetAutorun, wire.describe())
 }
 
 fn value_of<T>(finished: Finished<Result<T, Failure>>) -> Result<T, Exit> {

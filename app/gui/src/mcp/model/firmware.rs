@@ -1,6 +1,7 @@
 //! The firmware window of one link: the file, the risks and whether they were accepted, how far an update is, and what
 //! became of the settings.
 
+use crate::messages::WindowActMessage;
 use std::path::Path;
 use std::time::Duration;
 
@@ -304,7 +305,7 @@ impl Firmware {
             return Next::Nothing;
         }
         let Some(subject) = identity.subject() else { return Next::Nothing };
-        let job = Job::new("compare the settings with the backup", READ_LIMIT, move |wire| {
+        let job = Job::new(WindowActMessage::CompareWithBackup, READ_LIMIT, move |wire| {
             Ok(read_all(wire, subject).map_err(|failure| failure.to_string()))
         });
         let (job, reading) = job.queued();
@@ -376,7 +377,7 @@ fn back_up(
     thread
         .spawn(keep)
         .map_err(|error| format!("Could not start the thread that keeps the backup: {error}."))?;
-    let job = Job::new("back the settings up", READ_LIMIT, move |wire| {
+    let job = Job::new(WindowActMessage::BackUp, READ_LIMIT, move |wire| {
         let _ = read.try_send(read_all(wire, subject).map_err(|failure| failure.to_string()));
         Ok(())
     });

@@ -2,7 +2,9 @@
 //!
 //! A job that was cancelled has a result too: what was written and what was not.
 
+use crate::messages::WindowActMessage;
 use brushwork_link::Failure;
+use brushwork_link::Message;
 use brushwork_link::device::{Job, JobContext, JobTicket, QueuedJob};
 use brushwork_link::settings::{
     Ending, Keeper, Known, SettingsImage, SettingsTable, WriteOptions, begin_trial, end_act, write,
@@ -69,7 +71,7 @@ pub struct Running {
 
 impl Running {
     /// What it does: "read the settings".
-    pub fn name(&self) -> &str {
+    pub fn name(&self) -> &Message {
         self.ticket.name()
     }
 
@@ -101,8 +103,8 @@ pub(super) fn calibrate(
 ) -> (QueuedJob, Running) {
     let Calibrating { unit, wanted, keeper } = calibrating;
     let (name, action) = match opens {
-        true => ("open the input", SettingsAction::OpenInput),
-        false => ("put the input back", SettingsAction::CloseInput),
+        true => (WindowActMessage::OpenInput, SettingsAction::OpenInput),
+        false => (WindowActMessage::PutInputBack, SettingsAction::CloseInput),
     };
     let limit = Act::Write { wanted: SettingsImage::default(), known: Known::default() }.limit();
     let job = Job::new(name, limit, move |context| {

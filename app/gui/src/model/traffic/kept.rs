@@ -1,5 +1,7 @@
 //! A command put together by hand that changes settings: it waits until a backup of them is kept.
 
+use crate::messages::WindowCauseMessage;
+use brushwork_link::messages::{ActMessage, RemedyMessage};
 use std::task::Poll;
 use std::time::Duration;
 
@@ -9,7 +11,7 @@ use brushwork_values::{Value, Values};
 
 use brushwork_core::keep::TrialKeeper;
 
-const JOB: &str = "keep a backup before the command";
+const JOB: ActMessage = ActMessage::KeepBackup { act: "command" };
 /// A serial line of 2400 bit/s takes most of it.
 const LIMIT: Duration = Duration::from_secs(120);
 
@@ -70,8 +72,8 @@ impl KeptCommand {
             Poll::Ready(None) => Err(Failure::new(
                 JOB,
                 "this computer",
-                "something more urgent came first",
-                "Send it again when you are ready",
+                WindowCauseMessage::MoreUrgent,
+                RemedyMessage::SendWhenReady,
             )),
         };
         let (transact, _) = self.waiting.take()?;

@@ -175,9 +175,9 @@ fn running_ui(ui: &mut Ui, running: &Running, commands: &mut Commands) {
     if cancel.on_hover_text("Ends it after the command that is on the wire").clicked() {
         commands.push(Command::Settings(SettingsAction::Cancel));
     }
-    let text = if running.text.is_empty() { running.name() } else { &running.text };
+    let text = if running.text.is_empty() { running.name().to_string() } else { running.text.clone() };
     let bar = ProgressBar::new(running.fraction.unwrap_or(0.0)).desired_width(ui.available_width());
-    let response = ui.add(bar.text(text));
+    let response = ui.add(bar.text(text.as_str()));
     let spoken = format!("Progress: {}, {text}", running.name());
     response.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, &spoken));
 }

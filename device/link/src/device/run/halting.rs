@@ -8,6 +8,7 @@ use crate::device::event::{DisarmReason, Event};
 use crate::device::stop::{StopBytes, StopReport, UnitStop};
 use crate::exchange::{ExchangeError, Interruption};
 use crate::failure::Failure;
+use crate::messages::{ActMessage, CauseMessage, RemedyMessage};
 use std::time::Duration;
 
 /// A stop that was not confirmed is repeated this often.
@@ -185,8 +186,8 @@ impl DeviceLoop {
         }
         let silent_since = again.since.max(self.exchange.last_reply_at());
         if self.units.len() == 1 && ended_at >= silent_since + SILENCE_LIMIT {
-            let answer = stop.failures.first().map_or("no answer", |failure| failure.came_back.as_str());
-            self.lose_for(answer);
+            let answer = stop.failures.into_iter().next().map(|failure| failure.came_back);
+            self.lose_for(answer.unwrap_or_else(|| CauseMessage::NoAnswer.into()));
         } else if ended_at >= again.since + GIVE_UP_AFTER {
             self.give_up_stopping(index);
         }
@@ -195,10 +196,10 @@ impl DeviceLoop {
     fn give_up_stopping(&mut self, index: usize) {
         self.units[index].stop_again = None;
         let failure = Failure::new(
-            "stop the motors",
+            ActMessage::Stop,
             self.name_of(index),
-            format!("it did not confirm within {} s", GIVE_UP_AFTER.as_secs()),
-            "Cut its motor power now: its motors may still be running",
+            CauseMessage::StopUnconfirmed { seconds: GIVE_UP_AFTER.as_secs() },
+            RemedyMessage::CutPower,
         );
         self.outbox.send(Event::Failure(failure));
     }

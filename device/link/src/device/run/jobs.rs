@@ -9,6 +9,7 @@ use crate::device::job::{JobEnding, JobId, JobReport, QueuedJob};
 use crate::device::job_context::JobHost;
 use crate::exchange::{ExchangeError, Interruption, Reply, Watch};
 use crate::failure::Failure;
+use crate::messages::{CauseMessage, RemedyMessage};
 use crate::transport::TransportError;
 use crate::unit::{FirmwareGeneration, UnitAddress};
 use crate::wire::{HiddenSettings, Wire};
@@ -87,17 +88,17 @@ impl DeviceLoop {
     }
 
     fn job_refusal(&self, job: &QueuedJob, overtaken: bool) -> Option<Failure> {
-        let refuse = |came_back: &str, remedy: &str| {
+        let refuse = |came_back: CauseMessage, remedy: RemedyMessage| {
             Some(Failure::new(job.name.clone(), self.name_of(self.selected), came_back, remedy))
         };
         if !job.moves_motors {
             return None;
         }
         if overtaken {
-            return refuse("Stop was pressed after it was asked for", "Start it again when you are ready");
+            return refuse(CauseMessage::StoppedSince, RemedyMessage::StartWhenReady);
         }
         if !self.permit().motion {
-            return refuse("the motors are not armed", "Arm the motors on this screen first");
+            return refuse(CauseMessage::NotArmed, RemedyMessage::ArmFirst);
         }
         None
     }

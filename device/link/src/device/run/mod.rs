@@ -28,7 +28,9 @@ use crate::clock::Clock;
 use crate::exchange::Permit;
 use crate::exchange::{Exchange, ExchangeError, Interruption, Watch};
 use crate::failure::Failure;
+use crate::messages::{ActMessage, RemedyMessage};
 use crate::transport::Transport;
+use brushwork_values::Message;
 use crossbeam_channel::{Receiver, bounded};
 use state::{Phase, Unit};
 use std::collections::VecDeque;
@@ -210,17 +212,16 @@ impl DeviceLoop {
 
     /// The link is gone: says so, and why, and does nothing more.
     fn lose(&mut self, error: &ExchangeError) {
-        self.lose_for(&error.full());
+        self.lose_for(error.message());
     }
 
-    fn lose_for(&mut self, came_back: &str) {
+    fn lose_for(&mut self, came_back: Message) {
         let remedy = if self.guard.is_moving() || self.units.iter().any(|unit| unit.moved) {
-            "Make sure that the motors stand still; then check power and cable, and connect again"
+            RemedyMessage::SeeThatTheyStand
         } else {
-            "Check the controller's power and the cable, then connect again"
+            RemedyMessage::CheckPowerAndCable
         };
-        let failure =
-            Failure::new("go on talking to the controller", self.exchange.port(), came_back, remedy);
+        let failure = Failure::new(ActMessage::GoOnTalking, self.exchange.port(), came_back, remedy);
         self.end(Event::Lost(failure));
     }
 
@@ -327,7 +328,7 @@ impl DeviceLoop {
     }
 
     /// Tells a failure of an act, unless something broke in that is served anyway. A lost link ends the loop.
-    fn tell(&mut self, tried: &str, error: &ExchangeError) {
+    fn tell(&mut self, tried: ActMessage, error: &ExchangeError) {
         if error.is_link_lost() {
             self.lose(error);
         } else if error.interruption().is_none() {

@@ -10,6 +10,7 @@ use crate::device::poll_rate::PollRate;
 use crate::device::status::StatusReport;
 use crate::exchange::ExchangeError;
 use crate::failure::Failure;
+use crate::messages::{ActMessage, RemedyMessage};
 use std::time::Duration;
 
 /// A status that does not change is told this often.
@@ -172,10 +173,10 @@ impl DeviceLoop {
     fn tell_left_out(&mut self, index: usize, item: PollItem, error: &ExchangeError) {
         let seconds = SUSPENSION.as_secs();
         let failure = Failure::new(
-            format!("read: {}", item.name),
+            ActMessage::ReadItem { name: item.name },
             self.name_of(index),
-            error.full(),
-            format!("It is left out for {seconds} s, then tried again"),
+            error.message(),
+            RemedyMessage::LeftOut { seconds },
         );
         self.outbox.send(Event::Failure(failure));
     }

@@ -9,6 +9,7 @@ use crate::device::request::Request;
 use crate::device::signals::MOTION_LIFE;
 use crate::exchange::ExchangeError;
 use crate::failure::Failure;
+use crate::messages::{ActMessage, CauseMessage, RemedyMessage};
 use brushwork_values::{Message, Motor, Value};
 use std::time::Duration;
 
@@ -52,13 +53,15 @@ impl DeviceLoop {
             Request::Arm(scope) => self.arm(scope, overtaken, envelope.disarms),
             Request::Drive(drive) => self.drive(drive, asked_at, overtaken),
             Request::SetEncoder { motor, counts } => {
-                self.simple("set the encoder", asked_at, |unit, line| unit.set_encoder(line, motor, counts));
+                self.simple(ActMessage::SetEncoder, asked_at, |unit, line| {
+                    unit.set_encoder(line, motor, counts)
+                });
             }
             Request::ZeroEncoders => {
-                self.simple("zero the encoders", asked_at, |unit, line| unit.zero_encoders(line));
+                self.simple(ActMessage::ZeroEncoders, asked_at, |unit, line| unit.zero_encoders(line));
             }
             Request::ResetEStop => {
-                self.simple("reset the E-stop", asked_at, |unit, line| unit.reset_estop(line));
+                self.simple(ActMessage::ResetEStop, asked_at, |unit, line| unit.reset_estop(line));
             }
             Request::StartScript => self.start_script(asked_at, overtaken),
             Request::StopScript => self.stop_script(asked_at),
@@ -80,10 +83,10 @@ impl DeviceLoop {
             let family = self.units.first().map(|unit| unit.controller.identity().family);
             let place = family.map_or_else(|| address.to_string(), |family| family.address_text(address));
             let failure = Failure::new(
-                format!("select the unit {place}"),
+                ActMessage::Select { place },
                 self.exchange.port(),
-                "no unit answered there when the link was opened",
-                "Disconnect and connect again to look for it",
+                CauseMessage::NoSuchUnit,
+                RemedyMessage::ConnectAnew,
             );
             return self.outbox.send(Event::Failure(failure));
         };
@@ -103,14 +106,10 @@ impl DeviceLoop {
             return self.tell_armed(armed, Vec::new());
         }
         if self.armed.is_some() && !self.halt_and_confirm(DisarmReason::ScopeChange) {
-            return self.refuse(scope, "the motors could not be stopped first", "Press Stop, then try again");
+            return self.refuse(scope, CauseMessage::NotStopped, RemedyMessage::PressStop);
         }
         if overtaken {
-            return self.refuse(
-                scope,
-                "Stop was pressed after it was asked for",
-                "Arm again when you are ready",
-            );
+            return self.refuse(scope, CauseMessage::StoppedSince, RemedyMessage::ArmWhenReady);
         }
         let stream = self.stream;
         let now = self.clock.now();
@@ -124,7 +123,7 @@ impl DeviceLoop {
             Ok(check) if check.reasons.is_empty() => self.enter_armed(scope, check, disarms),
             Ok(ArmCheck { reasons, .. }) => self.outbox.send(Event::ArmRefused { scope, reasons }),
             Err(error) if error.is_link_lost() => self.lose(&error),
-            Err(error) => self.refuse(scope, &error.full(), error.remedy()),
+            Err(error) => self.refuse(scope, error.message(), error.remedy()),
         }
     }
 
@@ -143,30 +142,30 @@ impl DeviceLoop {
         self.outbox.send(Event::Armed { address, scope, controller_timeout, warnings });
     }
 
-    fn refuse(&mut self, scope: ArmScope, came_back: &str, remedy: &str) {
-        let reason =
-            Failure::new(format!("arm {scope}"), self.name_of(self.selected), came_back, remedy.to_owned());
+    fn refuse(&mut self, scope: ArmScope, came_back: impl Into<Message>, remedy: RemedyMessage) {
+        let on = self.name_of(self.selected);
+        let reason = Failure::new(ActMessage::Arm { scope }, on, came_back, remedy);
         self.outbox.send(Event::ArmRefused { scope, reasons: vec![reason] });
     }
 
     fn drive(&mut self, drive: Drive, asked_at: Duration, overtaken: bool) {
         let waited = self.clock.now().saturating_sub(asked_at);
         let refusal = if overtaken {
-            Some("Stop was pressed after it")
+            Some(CauseMessage::Stopped)
         } else if waited > MOTION_LIFE {
-            Some("it waited for longer than a motion may live")
+            Some(CauseMessage::TooOld)
         } else {
             None
         };
         if let Some(came_back) = refusal {
-            return self.tell_not_sent("move the motors", came_back);
+            return self.tell_not_sent(ActMessage::Move, came_back);
         }
         let sent_at = self.clock.now();
         match self.act(asked_at, |unit, line| unit.drive(line, &drive)) {
             Ok(()) => self.note_drive(&drive, sent_at),
             Err(error) => {
                 let unsure = is_unsure(&error);
-                self.tell("move the motors", &error);
+                self.tell(ActMessage::Move, &error);
                 if unsure {
                     self.halt(DisarmReason::NoAnswer);
                 }
@@ -188,7 +187,7 @@ impl DeviceLoop {
 
     fn start_script(&mut self, asked_at: Duration, overtaken: bool) {
         if overtaken {
-            return self.tell_not_sent("start the script", "Stop was pressed after it");
+            return self.tell_not_sent(ActMessage::StartScript, CauseMessage::Stopped);
         }
         let started = self.act(asked_at, |unit, line| unit.start_script(line));
         self.units[self.selected].script_started |= !matches!(started, Err(ExchangeError::NotArmed { .. }));
@@ -196,7 +195,7 @@ impl DeviceLoop {
             let unsure = is_unsure(&error);
             match error.answered() {
                 Some(answer) => self.tell_refused_start(answer),
-                None => self.tell("start the script", &error),
+                None => self.tell(ActMessage::StartScript, &error),
             }
             if unsure {
                 self.halt(DisarmReason::NoAnswer);
@@ -206,23 +205,21 @@ impl DeviceLoop {
 
     /// Simulated controllers refuse by another byte than FF. Nobody knows what a real one says, so that it is stopped all the same.
     fn tell_refused_start(&mut self, answer: u8) {
-        let came_back = format!("it answered {answer:02X} instead of FF: it holds no script that it can run");
-        let remedy = "Download the script first; a simulated controller runs what this program compiles, a real one what the maker's \
-                    tool compiles";
-        let failure = Failure::new("start the script", self.name_of(self.selected), came_back, remedy);
+        let (came_back, remedy) = (CauseMessage::NoScript { answer }, RemedyMessage::DownloadFirst);
+        let failure = Failure::new(ActMessage::StartScript, self.name_of(self.selected), came_back, remedy);
         self.outbox.send(Event::Failure(failure));
     }
 
     fn stop_script(&mut self, asked_at: Duration) {
         match self.act(asked_at, |unit, line| unit.stop_script(line)) {
             Ok(()) => self.units[self.selected].script_started = false,
-            Err(error) => self.tell("stop the script", &error),
+            Err(error) => self.tell(ActMessage::StopScript, &error),
         }
     }
 
     fn simple(
         &mut self,
-        tried: &str,
+        tried: ActMessage,
         asked_at: Duration,
         act: impl FnOnce(
             &mut dyn crate::device::controller::Controller,
@@ -235,11 +232,10 @@ impl DeviceLoop {
     }
 
     fn transact(&mut self, id: u64, command: u8, values: Vec<Value>, asked_at: Duration, overtaken: bool) {
-        let tried = format!("send command {command}");
+        let tried = ActMessage::SendCommand { command };
         let on = self.name_of(self.selected);
         if overtaken && self.units[self.selected].controller.can_move(command) {
-            let failure =
-                Failure::new(tried, on, "Stop was pressed after it", "Send it again when you are ready");
+            let failure = Failure::new(tried, on, CauseMessage::Stopped, RemedyMessage::SendWhenReady);
             return self.outbox.send(Event::Transacted { id, result: Err(failure) });
         }
         let reply = self
@@ -258,11 +254,10 @@ impl DeviceLoop {
     }
 
     fn raw(&mut self, id: u64, bytes: &[u8], asked_at: Duration, overtaken: bool) {
-        let tried = "send what was typed";
+        let tried = ActMessage::SendTyped;
         let on = self.name_of(self.selected);
         if overtaken {
-            let failure =
-                Failure::new(tried, on, "Stop was pressed after it", "Send it again when you are ready");
+            let failure = Failure::new(tried, on, CauseMessage::Stopped, RemedyMessage::SendWhenReady);
             return self.outbox.send(Event::RawReply { id, result: Err(failure) });
         }
         let undermines = self.units[self.selected].controller.raw_undermines_arming(bytes);
@@ -312,9 +307,9 @@ impl DeviceLoop {
         true
     }
 
-    pub(super) fn tell_not_sent(&mut self, tried: &str, came_back: &str) {
-        let failure =
-            Failure::new(tried, self.name_of(self.selected), came_back, "Ask again when you are ready");
+    pub(super) fn tell_not_sent(&mut self, tried: ActMessage, came_back: CauseMessage) {
+        let on = self.name_of(self.selected);
+        let failure = Failure::new(tried, on, came_back, RemedyMessage::AskWhenReady);
         self.outbox.send(Event::Failure(failure));
     }
 }

@@ -8,6 +8,7 @@ use crate::device::family::AnyFamily;
 use crate::device::handle::DeviceHandle;
 use crate::device::options::DeviceOptions;
 use crate::failure::Failure;
+use crate::messages::{ActMessage, CauseMessage, RemedyMessage};
 use crate::transport::Transport;
 use crossbeam_channel::{Receiver, bounded};
 use std::io;
@@ -74,13 +75,9 @@ impl DeviceLoop {
     /// The last act after a bug in the loop itself.
     fn bail_out(&mut self) {
         let stopped = self.write_stop(&DisarmReason::Stop).is_ok();
-        let came_back = if stopped {
-            "the device thread failed; stop was sent"
-        } else {
-            "the device thread failed, and stop could not be sent"
-        };
-        let remedy = "Make sure that the motors stand still, connect again, and report this as a bug";
-        self.end(Event::Lost(Failure::new("go on", self.exchange.port(), came_back, remedy)));
+        let came_back = if stopped { CauseMessage::ThreadFailed } else { CauseMessage::ThreadFailedMoving };
+        let port = self.exchange.port();
+        self.end(Event::Lost(Failure::new(ActMessage::GoOn, port, came_back, RemedyMessage::ReportBug)));
     }
 
     /// Gives a window that is slow at the end a moment to take the reason.

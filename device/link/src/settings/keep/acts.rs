@@ -14,7 +14,7 @@ use super::super::write_report::{RowState, WriteReport};
 use super::journal::Act;
 use super::keeper::{Ending, Entry, Keeper};
 use crate::failure::Failure;
-use crate::messages::WriteMessage;
+use crate::messages::{ActMessage, CauseMessage, RemedyMessage, WriteMessage};
 use crate::wire::Wire;
 use std::time::Duration;
 
@@ -55,7 +55,7 @@ impl Known {
         let keys: Vec<&str> = wanted.iter().map(|(key, _)| key).collect();
         if let Some(known) = self.0.take() {
             let now = read_rows(wire, &rows_involved(table, &keys)).map_err(|error| WriteError::NotRead {
-                failure: error.failure("read the settings first", wire.describe()),
+                failure: error.failure(ActMessage::ReadSettingsFirst, wire.describe()),
             })?;
             let is_as_known = |(key, value): (&str, _)| known.image.get(key) == Some(value);
             if now.failures.iter().all(|failure| failure.is_absent) && now.image.iter().all(is_as_known) {
@@ -255,8 +255,8 @@ fn begin(
     wanted: SettingsImage,
     keeper: &mut dyn Keeper,
 ) -> Result<(), Failure> {
-    let tried = format!("keep a backup before the {}", act.label());
-    wire.report_progress(0, 1, &tried);
+    let tried = ActMessage::KeepBackup { act: act.label() };
+    wire.report_progress(0, 1, &tried.to_string());
     keeper.begin(Entry {
         act,
         table: before.table.clone(),
@@ -268,14 +268,9 @@ fn begin(
         if let Some(kept) = keeper.begun() {
             return kept;
         }
-        wire.sleep(Duration::ZERO).map_err(|error| error.failure(&tried, wire.describe()))?;
+        wire.sleep(Duration::ZERO).map_err(|error| error.failure(tried.clone(), wire.describe()))?;
     }
-    Err(Failure::new(
-        tried,
-        "this computer",
-        "the disk did not answer in time",
-        "Check the disk and try again",
-    ))
+    Err(Failure::new(tried, "this computer", CauseMessage::DiskIsLate, RemedyMessage::CheckDisk))
 }
 
 /// Has the journal closed, or left, and waits until the disk shows it: whoever looks after the act finds what became of it. Stop

@@ -4,7 +4,7 @@ use crate::can::access::read;
 use crate::can::monitor::Monitor;
 use crate::can::place::Place;
 use crate::controller::identify_node;
-use crate::messages::McpIdentityMessage;
+use crate::messages::{McpCauseMessage, McpIdentityMessage, McpRemedyMessage};
 use brushwork_canopen::adapter::{Decoder, Form};
 use brushwork_canopen::nmt::objects;
 use brushwork_canopen::sdo::Transfer;
@@ -15,6 +15,7 @@ use brushwork_link::device::controller::{Controller, DiscoverError, Line, Search
 use brushwork_link::device::{Addresses, DeviceOptions};
 use brushwork_link::exchange::{ExchangeError, Judgement, Outgoing};
 use brushwork_link::failure::Failure;
+use brushwork_link::messages::ActMessage;
 use brushwork_mcp_wire::canopen::objects::{TEXT, index_of};
 use brushwork_mcp_wire::packet_serial::number;
 use std::collections::BTreeSet;
@@ -160,23 +161,20 @@ fn identity_notes(line: &mut Line<'_>, place: Place) -> Result<Vec<Message>, Exc
 fn nothing_there(line: &mut Line<'_>, addresses: Addresses, others: &[String], heard: u64) -> Failure {
     let on = line.exchange().port();
     let asked = match addresses {
-        Addresses::Scan | Addresses::Factory => "no node of the bus answered".to_owned(),
-        Addresses::Only(id) => format!("node {id} did not answer"),
+        Addresses::Scan | Addresses::Factory => McpCauseMessage::NoNodeAnswered,
+        Addresses::Only(id) => McpCauseMessage::NodeSilent { id },
         Addresses::These(set) => {
             let each: Vec<_> = set.iter().map(|id| id.to_string()).collect();
-            format!("none of the nodes {} answered", each.join(", "))
+            McpCauseMessage::NodesSilent { listed: each.join(", ") }
         }
     };
+    let asked = asked.into();
     let (came_back, remedy) = match (others, heard) {
-        ([], 0) => (
-            format!("{asked}, and the adapter said nothing"),
-            "Check the adapter's port and baud rate, its form (form=ascii or form=binary), the bus rate and the 120 Ω at both ends",
-        ),
-        ([], _) => (
-            format!("{asked}, though the adapter works"),
-            "Check the node id, that the controller's CAN pins are set to CANopen, and that its rate is the bus's",
-        ),
-        (others, _) => (others.join("; "), "Give the node of the motor controller: node=3"),
+        ([], 0) => (McpCauseMessage::AdapterSilent { asked }, McpRemedyMessage::CheckAdapter),
+        ([], _) => (McpCauseMessage::AdapterWorks { asked }, McpRemedyMessage::CheckNode),
+        (others, _) => {
+            (McpCauseMessage::OtherNodes { listed: others.join("; ") }, McpRemedyMessage::GiveNode)
+        }
     };
-    Failure::new("find a controller", on, came_back, remedy)
+    Failure::new(ActMessage::FindController, on, came_back, remedy)
 }

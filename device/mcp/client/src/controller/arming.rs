@@ -5,7 +5,7 @@
 
 use crate::can::{MASTER_LIMIT, Monitor, Place};
 use crate::controller::speaker::{Speaker, Wire};
-use crate::messages::McpDriverMessage;
+use crate::messages::{McpActMessage, McpCauseMessage, McpDriverMessage, McpRemedyMessage};
 use brushwork_link::Message;
 use brushwork_link::device::controller::{ArmCheck, Line};
 use brushwork_link::exchange::{Exchange, ExchangeError};
@@ -24,8 +24,8 @@ const PRIORITY_SERIAL: i64 = 1;
 
 /// Why motors may not be moved, and what to do about it.
 struct Objection {
-    came_back: String,
-    remedy: String,
+    came_back: McpCauseMessage,
+    remedy: McpRemedyMessage,
 }
 
 /// Reads everything arming depends on, and lists all that speaks against it.
@@ -49,15 +49,18 @@ pub fn check(
     objections.extend(controller_timeout.and_then(|timeout| object_to_lateness(line.exchange(), timeout)));
     let faults = faults(speaker, line)?;
     let tells_status = faults.is_some();
-    objections.extend(faults.into_iter().flatten().map(|fault| {
-        object(format!("the controller reports {fault}"), "Remove the cause and reset the error first")
-    }));
+    objections.extend(
+        faults
+            .into_iter()
+            .flatten()
+            .map(|fault| object(McpCauseMessage::Reports { fault }, McpRemedyMessage::ResetFirst)),
+    );
     let mut warnings = if objections.is_empty() { coasting(speaker, line)? } else { Vec::new() };
     if !tells_status {
         warnings.push(McpDriverMessage::StatusUnseen.into());
     }
     let failure =
-        |objection: Objection| Failure::new("arm the motors", on, objection.came_back, objection.remedy);
+        |objection: Objection| Failure::new(McpActMessage::Arm, on, objection.came_back, objection.remedy);
     Ok(ArmCheck { reasons: objections.into_iter().map(failure).collect(), controller_timeout, warnings })
 }
 
@@ -70,10 +73,7 @@ fn node_watchdog(
     line: &mut Line<'_>,
 ) -> Result<Result<Duration, Objection>, ExchangeError> {
     if !line.permit().guesses {
-        return Ok(Err(object(
-            "over CANopen the controller has no time-out (MCP manual 1.9.4), so the motors would run on if this program died",
-            "Drive it over USB or a serial port; settings and readings work over CANopen too",
-        )));
+        return Ok(Err(object(McpCauseMessage::NoTimeoutOverCan, McpRemedyMessage::NotOverCan)));
     }
     match place.watch_master(line) {
         Ok(()) => {
@@ -81,10 +81,7 @@ fn node_watchdog(
             Ok(Ok(MASTER_LIMIT))
         }
         Err(error) if error.is_link_lost() || error.interruption().is_some() => Err(error),
-        Err(_) => Ok(Err(object(
-            "the node does not watch this program's heartbeat, so the motors would run on if this program died",
-            "Drive it over USB or a serial port",
-        ))),
+        Err(_) => Ok(Err(object(McpCauseMessage::HeartbeatUnwatched, McpRemedyMessage::DriveOverSerial))),
     }
 }
 
@@ -104,10 +101,7 @@ fn watchdog(
         return Ok(Err(unreadable()));
     };
     Ok(match reply.values.int(TIMEOUT) {
-        0 => Err(object(
-            "the serial time-out is 0, so the motors would run on if this program died",
-            "Set the serial time-out in General Settings, to 1 s for example",
-        )),
+        0 => Err(object(McpCauseMessage::NoSerialTimeout, McpRemedyMessage::SetSerialTimeout)),
         raw => Ok(Duration::from_secs_f64(raw as f64 * scale::DECISECOND_S)),
     })
 }
@@ -123,8 +117,8 @@ fn of_streams<const L: u8>(streams: &Read<L>, stream: Option<Stream>) -> Result<
     for (record, candidate) in possible {
         if record.int(TYPE) != PACKET_SERIAL {
             return Err(object(
-                format!("{candidate} is not set to packet serial, so this port cannot be {candidate}"),
-                "Choose the connector that this port is really wired to",
+                McpCauseMessage::NotPacketSerial { stream: candidate },
+                McpRemedyMessage::ChooseWired,
             ));
         }
         let timeout_ms = u64::try_from(record.int(TIMEOUT)).unwrap_or(0);
@@ -144,12 +138,8 @@ fn object_to_lateness(exchange: &Exchange, timeout: Duration) -> Option<Objectio
         // To the next 100 ms, in which RoboClaws count.
         let enough_ms = (3 * latest).as_millis().next_multiple_of(100);
         object(
-            format!(
-                "replies on this line take up to {} ms, so a serial time-out of {} ms would stop the motors at each reply that is lost",
-                latest.as_millis(),
-                timeout.as_millis()
-            ),
-            format!("Set the time-out to {enough_ms} ms or more in General Settings"),
+            McpCauseMessage::LineIsLate { latest_ms: latest.as_millis(), timeout_ms: timeout.as_millis() },
+            McpRemedyMessage::LengthenTimeout { enough_ms },
         )
     })
 }
@@ -157,25 +147,16 @@ fn object_to_lateness(exchange: &Exchange, timeout: Duration) -> Option<Objectio
 fn no_timeout(candidate: Stream, is_known: bool) -> Objection {
     if is_known {
         object(
-            format!("the time-out of {candidate} is 0, so the motors would run on if this program died"),
-            format!("Set the priority time-out of {candidate} in General Settings, to 1000 ms for example"),
+            McpCauseMessage::NoTimeout { stream: candidate },
+            McpRemedyMessage::SetTimeout { stream: candidate },
         )
     } else {
-        object(
-            format!(
-                "nobody said which connector of the controller this port is, and {candidate} has no time-out"
-            ),
-            "Choose the connector, or give it with the port: \",stream=usb\"",
-        )
+        object(McpCauseMessage::UnknownPort { stream: candidate }, McpRemedyMessage::ChooseConnector)
     }
 }
 
 fn unreadable() -> Objection {
-    object(
-        "the controller does not tell its serial time-out, so nobody knows whether the motors would stop if this program \
-         died",
-        "Drive this controller with another program that you can watch",
-    )
+    object(McpCauseMessage::TimeoutUntold, McpRemedyMessage::DriveOtherwise)
 }
 
 /// Serial must be in one of the priority levels. A unit without such levels has nothing to object to.
@@ -184,16 +165,11 @@ fn object_to_priorities(speaker: Speaker, line: &mut Line<'_>) -> Result<Option<
         return Ok(None);
     };
     let has_serial = priorities.values.ints().any(|level| level == PRIORITY_SERIAL);
-    Ok((!has_serial).then(|| {
-        object(
-            "Serial is in none of the three priority levels, so the controller does not take its motion from this port",
-            "Set priority level 1 to Serial in General Settings",
-        )
-    }))
+    Ok((!has_serial).then(|| object(McpCauseMessage::SerialNowhere, McpRemedyMessage::SetPriority)))
 }
 
-fn object(came_back: impl Into<String>, remedy: impl Into<String>) -> Objection {
-    Objection { came_back: came_back.into(), remedy: remedy.into() }
+fn object(came_back: McpCauseMessage, remedy: McpRemedyMessage) -> Objection {
+    Objection { came_back, remedy }
 }
 
 /// Motors in torque control, which inductance and resistance switch on (MCP manual 1.2.11). Assumed: duty 0 is then a current of

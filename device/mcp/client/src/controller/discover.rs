@@ -4,7 +4,7 @@ use crate::can::{Monitor, Place};
 use crate::controller::speaker::{Speaker, Wire};
 use crate::controller::unit::Mcp;
 use crate::controller::{generation, polling, stopping};
-use crate::messages::McpIdentityMessage;
+use crate::messages::{McpCauseMessage, McpIdentityMessage, McpRemedyMessage};
 use crate::{MCP, McpFacts, firmware_of as generation_number};
 use brushwork_link::Message;
 use brushwork_link::device::StopBytes;
@@ -13,6 +13,7 @@ use brushwork_link::device::{Addresses, DeviceOptions};
 use brushwork_link::device::{Facts, Identity};
 use brushwork_link::exchange::{ExchangeError, RETRIES};
 use brushwork_link::failure::Failure;
+use brushwork_link::messages::{ActMessage, CauseMessage};
 use brushwork_link::transport::Stream;
 use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::models::Model;
@@ -265,29 +266,21 @@ fn firmware_of(version: &str) -> &str {
 
 fn nothing_there(line: &mut Line<'_>, addresses: Addresses, heard: u64) -> Failure {
     let on = line.exchange().port();
-    let asked = match addresses {
-        Addresses::Scan => "addresses 0x80 to 0x87".to_owned(),
-        Addresses::Only(address) => format!("address 0x{address:02X}"),
+    let asked: Message = match addresses {
+        Addresses::Scan => McpCauseMessage::AllAddresses.into(),
+        Addresses::Only(address) => McpCauseMessage::Address { address }.into(),
         Addresses::These(set) => {
             let each: Vec<_> = set.iter().map(|address| format!("0x{address:02X}")).collect();
-            format!("the addresses {}", each.join(", "))
+            CauseMessage::Addresses { listed: each.join(", ") }.into()
         }
-        Addresses::Factory => format!("address {}", Address::DEFAULT),
+        Addresses::Factory => McpCauseMessage::Address { address: Address::DEFAULT.get() }.into(),
     };
-    let came_back = match heard {
-        0 => format!("nothing answered at {asked}"),
-        1 => format!("one byte came, but no packet serial, from {asked}"),
-        count => format!("{count} bytes came, but no packet serial, from {asked}"),
+    let (came_back, remedy) = match heard {
+        0 => (McpCauseMessage::NothingAnswered { asked }, McpRemedyMessage::CheckPowerAndPort),
+        1 => (McpCauseMessage::OneByteCame { asked }, McpRemedyMessage::CheckBaudRate),
+        count => (McpCauseMessage::BytesCame { count, asked }, McpRemedyMessage::CheckBaudRate),
     };
-    let remedy = match heard {
-        0 => {
-            "Check that the controller has motor power, that the cable and the port are right, and the baud rate"
-        }
-        _ => {
-            "Check the baud rate, and that the device on this port is a motor controller set to packet serial"
-        }
-    };
-    Failure::new("find a controller", on, came_back, remedy)
+    Failure::new(ActMessage::FindController, on, came_back, remedy)
 }
 
 #[cfg(test)]

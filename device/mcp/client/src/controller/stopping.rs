@@ -1,7 +1,7 @@
 //! Stopping a unit: at once without asking, then again with its confirmation, and what can still drive it after that.
 
 use crate::controller::speaker::{Speaker, Wire};
-use crate::messages::McpDriverMessage;
+use crate::messages::{McpActMessage, McpDriverMessage, McpRemedyMessage};
 use crate::packet::{Ask, encode_error, gate};
 use brushwork_link::Message;
 use brushwork_link::device::controller::Line;
@@ -9,6 +9,7 @@ use brushwork_link::device::{StopBytes, UnitStop};
 use brushwork_link::exchange::ExchangeError;
 use brushwork_link::exchange::{Bracketed, transact_between};
 use brushwork_link::failure::Failure;
+use brushwork_link::messages::ActMessage;
 use brushwork_mcp_wire::codes;
 use brushwork_mcp_wire::models::Model;
 use brushwork_mcp_wire::packet_serial::name::{MAX_ACTION, MIN_ACTION, TARGET, TYPE};
@@ -26,9 +27,6 @@ const EMPTY: i64 = 0x80;
 
 /// An acknowledgement that did not come at once is asked for in the way that no late reply can disturb.
 const QUICK_RETRIES: u32 = 1;
-
-/// What to do when a stop is not confirmed.
-const CUT_POWER: &str = "Cut the motor power now: the motors may still be running";
 
 /// The packets that stop a unit, back to back: duty 0, since that is what every unit knows and nothing may come before it. A unit
 /// discards what follows a packet that it does not know (MCP manual 2.2.4). With `scripts` the script is ended then, with
@@ -74,7 +72,7 @@ pub fn confirm(
     };
     if let Err(error) = stand(line) {
         pass_on(&error)?;
-        stop.failures.push(Failure::new("stop the motors", on, error.full(), CUT_POWER));
+        stop.failures.push(Failure::new(ActMessage::Stop, on, error.message(), McpRemedyMessage::CutPower));
         return Ok(stop);
     }
     stop.confirmed = true;
@@ -83,7 +81,12 @@ pub fn confirm(
         if let Err(error) = stand(line) {
             pass_on(&error)?;
             stop.confirmed = false;
-            stop.failures.push(Failure::new("stop the motors", on, error.full(), CUT_POWER));
+            stop.failures.push(Failure::new(
+                ActMessage::Stop,
+                on,
+                error.message(),
+                McpRemedyMessage::CutPower,
+            ));
             return Ok(stop);
         }
     }
@@ -91,7 +94,12 @@ pub fn confirm(
         Ok(empty) => stop.buffers_empty = empty,
         Err(error) => {
             pass_on(&error)?;
-            stop.failures.push(Failure::new("empty the motion buffers", on, error.full(), CUT_POWER));
+            stop.failures.push(Failure::new(
+                McpActMessage::EmptyBuffers,
+                on,
+                error.message(),
+                McpRemedyMessage::CutPower,
+            ));
         }
     }
     Ok(stop)

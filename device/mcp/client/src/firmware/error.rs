@@ -1,5 +1,7 @@
 //! Why a transfer broke, and in which state that leaves the controller.
 
+use crate::messages::{McpActMessage, McpRemedyMessage};
+use brushwork_link::Message;
 use brushwork_link::failure::Failure;
 use brushwork_link::transport::TransportError;
 use std::time::Duration;
@@ -20,19 +22,12 @@ pub enum Left {
 impl Left {
     /// What the user should do, as sentences without the last full stop.
     #[must_use]
-    pub fn remedy(self) -> &'static str {
+    pub fn remedy(self) -> McpRemedyMessage {
         match self {
-            Self::Untouched => {
-                "Nothing was erased: switch the controller off and on, and it runs its old firmware again"
-            }
-            Self::PerhapsErasing => {
-                "It may be erasing its memory: leave its power on for a minute. Then switch it off and on, and resume the update"
-            }
-            Self::WithoutFirmware => {
-                "The controller has no firmware now and waits for it in its loader: switch it off and on, and resume the update \
-                 with the same file"
-            }
-            Self::Complete => "The whole image is there: switch the controller off and on, then connect",
+            Self::Untouched => McpRemedyMessage::Untouched,
+            Self::PerhapsErasing => McpRemedyMessage::PerhapsErasing,
+            Self::WithoutFirmware => McpRemedyMessage::WithoutFirmware,
+            Self::Complete => McpRemedyMessage::Complete,
         }
     }
 }
@@ -95,12 +90,20 @@ impl SendError {
     /// The failure as it is shown.
     #[must_use]
     pub fn failure(&self, on: impl Into<String>) -> Failure {
-        let came_back = match self {
+        let came_back = Message::error(WithCauses(self.clone()));
+        Failure::new(McpActMessage::SendFirmware, on, came_back, self.left().remedy())
+    }
+
+    fn full(&self) -> String {
+        match self {
             Self::Line { source, .. } => format!("{self}: {}", source.full()),
             Self::Cancelled | Self::NoGreeting { .. } | Self::PageLost { .. } | Self::PageRefused { .. } => {
                 self.to_string()
             }
-        };
-        Failure::new("send the firmware", on, came_back, self.left().remedy())
+        }
     }
 }
+
+#[derive(Debug, thiserror::Error)]
+#[error("{}", .0.full())]
+struct WithCauses(SendError);

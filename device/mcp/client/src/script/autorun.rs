@@ -1,16 +1,16 @@
 //! Whether a controller runs its script by itself after power-up (MCP manual, commands 246 and 247).
 
 use crate::TypedWire;
+use crate::messages::{McpActMessage, McpCauseMessage};
 use brushwork_link::device::Job;
 use brushwork_link::exchange::ExchangeError;
 use brushwork_link::failure::Failure;
+use brushwork_link::messages::RemedyMessage;
 use brushwork_link::wire::Wire;
 use brushwork_mcp_wire::packet_serial::commands;
 use brushwork_mcp_wire::packet_serial::name::DELAY;
 use std::time::Duration;
 
-/// What the job is called while it runs.
-pub const AUTORUN_JOB: &str = "set the script's autorun";
 /// A shorter delay switches autorun off (MCP manual, command 246).
 pub const MIN_AUTORUN: Duration = Duration::from_millis(100);
 /// A save restarts some units.
@@ -34,7 +34,8 @@ pub fn read_autorun(wire: &mut dyn Wire) -> Result<Autorun, ExchangeError> {
 /// # Errors
 /// The exchange failed, or the controller kept something else.
 pub fn set_autorun(wire: &mut dyn Wire, autorun: Autorun) -> Result<(), Failure> {
-    let failure = |error: &ExchangeError, wire: &dyn Wire| error.failure(AUTORUN_JOB, wire.describe());
+    let failure =
+        |error: &ExchangeError, wire: &dyn Wire| error.failure(McpActMessage::SetAutorun, wire.describe());
     let delay_ms = autorun.map_or(0, |delay| i64::try_from(delay.max(MIN_AUTORUN).as_millis()).unwrap_or(0));
     let written = wire.ask(commands::SET_SCRIPT_AUTORUN, &[delay_ms]);
     written.map_err(|error| failure(&error, wire))?;
@@ -43,13 +44,13 @@ pub fn set_autorun(wire: &mut dyn Wire, autorun: Autorun) -> Result<(), Failure>
     if kept == wanted {
         return Ok(());
     }
-    let came_back =
-        format!("it was told {delay_ms} ms and says {} ms", kept.map_or(0, |delay| delay.as_millis()));
-    Err(Failure::new(AUTORUN_JOB, wire.describe(), came_back, "Try again"))
+    let kept_ms = kept.map_or(0, |delay| delay.as_millis());
+    let came_back = McpCauseMessage::AutorunKept { wanted_ms: delay_ms, kept_ms };
+    Err(Failure::new(McpActMessage::SetAutorun, wire.describe(), came_back, RemedyMessage::TryAgain))
 }
 
 /// Sets it as a job. The settings are not saved by it.
 #[must_use]
 pub fn autorun_job(autorun: Autorun) -> Job<()> {
-    Job::new(AUTORUN_JOB, LIMIT, move |context| set_autorun(context, autorun))
+    Job::new(McpActMessage::SetAutorun, LIMIT, move |context| set_autorun(context, autorun))
 }

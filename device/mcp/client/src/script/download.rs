@@ -1,6 +1,7 @@
 //! Erasing the script memory and writing an image into it, block by block.
 
 use crate::TypedWire;
+use crate::messages::{McpActMessage, McpCauseMessage, McpRemedyMessage};
 use crate::packet::typed;
 use crate::script::autorun::{Autorun, read_autorun};
 use crate::script::image::{Origin, ScriptImage};
@@ -15,10 +16,6 @@ use brushwork_values::Value;
 use std::collections::BTreeSet;
 use std::time::Duration;
 
-/// What the job is called while it runs.
-pub const DOWNLOAD_JOB: &str = "download the script";
-/// What a download that was cut short leaves.
-pub const CUT_SHORT: &str = "The script memory now holds a part of the image. Download again before the script is started or the controller is switched on";
 /// The key under which a simulated controller tells the CRC-16 of what its script memory holds
 /// ([`HiddenSettings`](brushwork_link::HiddenSettings)).
 pub const CHECKSUM_KEY: &str = "script.checksum";
@@ -64,7 +61,7 @@ pub enum Verified {
 pub fn download_job(image: ScriptImage, simulated_elsewhere: bool) -> Job<Downloaded> {
     let blocks = u32::try_from(image.blocks().len()).unwrap_or(u32::MAX);
     let limit = Duration::from_secs(60) + Duration::from_millis(200).saturating_mul(blocks);
-    Job::new(DOWNLOAD_JOB, limit, move |context| {
+    Job::new(McpActMessage::DownloadScript, limit, move |context| {
         let is_simulated = context.is_simulated() || simulated_elsewhere;
         download(context, &image, is_simulated)
     })
@@ -76,11 +73,12 @@ pub fn download_job(image: ScriptImage, simulated_elsewhere: bool) -> Job<Downlo
 /// The image is not for this controller, in which case nothing was sent; or why it broke, and what that leaves.
 pub fn download(wire: &mut dyn Wire, image: &ScriptImage, is_simulated: bool) -> Result<Downloaded, Failure> {
     if let Some((came_back, remedy)) = image.objection(is_simulated) {
-        return Err(Failure::new(DOWNLOAD_JOB, wire.describe(), came_back, remedy));
+        return Err(Failure::new(McpActMessage::DownloadScript, wire.describe(), came_back, remedy));
     }
     let begun_at = wire.now();
     wire.report_progress(0, 0, "stopping the script");
-    let untouched = |error: ExchangeError, wire: &dyn Wire| error.failure(DOWNLOAD_JOB, wire.describe());
+    let untouched =
+        |error: ExchangeError, wire: &dyn Wire| error.failure(McpActMessage::DownloadScript, wire.describe());
     wire.ask(commands::STOP_SCRIPT, &[]).map_err(|error| untouched(error, wire))?;
     let autorun = read_autorun(wire).map_err(|error| untouched(error, wire))?;
     wire.report_progress(0, 0, "erasing the script memory");
@@ -117,28 +115,33 @@ struct Sending {
 impl Sending {
     fn erase(&self, wire: &mut dyn Wire) -> Result<(), Failure> {
         let reply = repeated(wire, commands::ERASE_SCRIPT, || vec![Value::Int(ERASE_KEY)]);
-        let values = reply.map_err(|error| self.broken(wire, "erasing", &error.full()))?;
-        self.check(wire, "the erase", values.int(STATUS))
+        let values = reply
+            .map_err(|error| self.left(wire, McpCauseMessage::BrokeErasing { cause: error.message() }))?;
+        self.check(wire, values.int(STATUS), |status| McpCauseMessage::EraseStatus { status })
     }
 
     fn write(&mut self, wire: &mut dyn Wire, block: &Block) -> Result<(), Failure> {
         let values = || vec![Value::Int(block.address.into()), Value::Bytes(block.wire_bytes().to_vec())];
-        let place = format!("the block at 0x{:06X}", block.address);
+        let address = block.address;
         let reply = repeated(wire, commands::WRITE_SCRIPT, values);
-        let values = reply.map_err(|error| self.broken(wire, &format!("writing {place}"), &error.full()))?;
+        let broken = |cause| McpCauseMessage::BrokeWriting { address, cause };
+        let values = reply.map_err(|error| self.left(wire, broken(error.message())))?;
         let status = values.int(STATUS);
         self.statuses.insert(status as u8);
-        self.check(wire, &place, status)
+        self.check(wire, status, |status| McpCauseMessage::BlockStatus { address, status })
     }
 
     /// A simulated controller says plainly what it did.
-    fn check(&self, wire: &dyn Wire, what: &str, status: i64) -> Result<(), Failure> {
+    fn check(
+        &self,
+        wire: &dyn Wire,
+        status: i64,
+        refused: impl FnOnce(i64) -> McpCauseMessage,
+    ) -> Result<(), Failure> {
         if !self.is_simulated || status == STATUS_DONE {
             return Ok(());
         }
-        let came_back =
-            format!("{what} was answered with status {status:02X}: it does not fit into the script memory");
-        Err(self.left(wire, came_back))
+        Err(self.left(wire, refused(status)))
     }
 
     fn verify(&self, wire: &dyn Wire, image: &ScriptImage) -> Result<Verified, Failure> {
@@ -147,7 +150,7 @@ impl Sending {
             return if held == i64::from(image.checksum()) {
                 Ok(Verified::Content)
             } else {
-                Err(self.left(wire, "the script memory holds something else than was sent".to_owned()))
+                Err(self.left(wire, McpCauseMessage::HoldsSomethingElse))
             };
         }
         let mut statuses = self.statuses.iter();
@@ -156,29 +159,16 @@ impl Sending {
                 Ok(Verified::Status)
             }
             (Some(status), None) => Ok(Verified::Alike(*status)),
-            _ => {
-                let came_back =
-                    "its blocks were answered with different status bytes, whose meaning is not public";
-                Err(self.left(wire, came_back.to_owned()))
-            }
+            _ => Err(self.left(wire, McpCauseMessage::DifferentStatuses)),
         }
     }
 
-    fn broken(&self, wire: &dyn Wire, at: &str, came_back: &str) -> Failure {
-        self.left(wire, format!("it broke at {at}: {came_back}"))
-    }
-
-    fn left(&self, wire: &dyn Wire, came_back: String) -> Failure {
-        let autorun = match self.autorun {
-            Some(delay) => {
-                format!(
-                    ". Autorun is on: the controller would run it {} ms after power-up",
-                    delay.as_millis()
-                )
-            }
-            None => String::new(),
+    fn left(&self, wire: &dyn Wire, came_back: McpCauseMessage) -> Failure {
+        let remedy = match self.autorun {
+            Some(delay) => McpRemedyMessage::DownloadAgainAutorun { delay_ms: delay.as_millis() },
+            None => McpRemedyMessage::DownloadAgain,
         };
-        Failure::new(DOWNLOAD_JOB, wire.describe(), came_back, format!("{CUT_SHORT}{autorun}"))
+        Failure::new(McpActMessage::DownloadScript, wire.describe(), came_back, remedy)
     }
 }
 

@@ -1,5 +1,6 @@
 //! A compiled script: whose format it is, and to whom it may be sent.
 
+use crate::messages::{McpCauseMessage, McpRemedyMessage};
 use brushwork_mcp_wire::crc::crc16_xmodem;
 use brushwork_mcp_wire::script_image;
 use brushwork_mcp_wire::script_image::{Block, MOST_BYTES};
@@ -79,12 +80,9 @@ impl ScriptImage {
 
     /// Why it is not sent to this controller, if it is not.
     #[must_use]
-    pub fn objection(&self, is_simulated: bool) -> Option<(&'static str, &'static str)> {
-        (self.origin == Origin::Own && !is_simulated).then_some((
-            "the byte code of real controllers is not public, so what this program compiles runs on simulated ones alone",
-            "Compile the script with the maker's Ion Studio and download that file: it is sent as it is, and can be started, stopped \
-             and set to autorun from here. Or run the script on a simulated controller",
-        ))
+    pub fn objection(&self, is_simulated: bool) -> Option<(McpCauseMessage, McpRemedyMessage)> {
+        (self.origin == Origin::Own && !is_simulated)
+            .then_some((McpCauseMessage::NotPublic, McpRemedyMessage::UseIonStudio))
     }
 }
 
@@ -104,7 +102,7 @@ mod tests {
         }
         let foreign = ScriptImage::from_file(&[0x1A; HEADER_BYTES + 1]).unwrap();
         assert_eq!((foreign.origin(), foreign.len(), foreign.blocks().len()), (Origin::Foreign, 1, 1));
-        assert_eq!(foreign.objection(false), None);
+        assert!(foreign.objection(false).is_none());
     }
 
     #[test]

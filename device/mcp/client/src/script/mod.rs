@@ -8,6 +8,6 @@ mod autorun;
 mod download;
 mod image;
 
-pub use autorun::{AUTORUN_JOB, Autorun, MIN_AUTORUN, autorun_job, read_autorun, set_autorun};
-pub use download::{CHECKSUM_KEY, CUT_SHORT, DOWNLOAD_JOB, Downloaded, Verified, download, download_job};
+pub use autorun::{Autorun, MIN_AUTORUN, autorun_job, read_autorun, set_autorun};
+pub use download::{CHECKSUM_KEY, Downloaded, Verified, download, download_job};
 pub use image::{ImageError, Origin, ScriptImage};

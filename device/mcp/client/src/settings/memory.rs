@@ -1,5 +1,6 @@
 //! The EEPROM of an MCP or RoboClaw: saved as a whole, and proven by loading it again.
 
+use crate::messages::{McpActMessage, McpCauseMessage, McpRemedyMessage};
 use brushwork_link::Failure;
 use brushwork_link::settings::{
     Difference, ReadReport, SaveReport, SaveVerdict, WriteOptions, WriteReport, answers, await_unit, diff,
@@ -14,16 +15,15 @@ const RELOAD_TRIES: usize = 3;
 
 pub fn save(wire: &mut dyn Wire, before: &ReadReport, options: WriteOptions) -> Result<SaveReport, Failure> {
     wire.report_progress(0, 3, "save to EEPROM");
-    let tried = "save the settings (94)";
     if let Err(error) = wire.transact(number::SAVE_SETTINGS, &[]) {
         // Refused before it went out: nothing was saved. Anything else may have been carried out.
         return if went_out(&error) {
-            Ok(unknown(error.failure(tried, wire.describe())))
+            Ok(unknown(error.failure(McpActMessage::Save, wire.describe())))
         } else {
-            Err(error.failure(tried, wire.describe()))
+            Err(error.failure(McpActMessage::Save, wire.describe()))
         };
     }
-    if let Err(failure) = await_unit(wire, "save the settings (94)") {
+    if let Err(failure) = await_unit(wire, McpActMessage::Save) {
         return Ok(unknown(failure));
     }
     wire.report_progress(1, 3, "load from EEPROM");
@@ -71,15 +71,14 @@ fn put_back(
 }
 
 pub fn restore(wire: &mut dyn Wire) -> Result<(), Failure> {
-    let tried = "restore the defaults (80)";
     match wire.transact(number::RESTORE_DEFAULTS, &[]) {
         Ok(_) => {}
         // Without an acknowledgement only the settings themselves can tell whether it was done.
         Err(error) if went_out(&error) && !is_final(&error) => {}
-        Err(error) => return Err(error.failure(tried, wire.describe())),
+        Err(error) => return Err(error.failure(McpActMessage::Restore, wire.describe())),
     }
     let old = wire.address();
-    await_unit(wire, tried).or_else(|failure| {
+    await_unit(wire, McpActMessage::Restore).or_else(|failure| {
         if wire.set_address(UnitAddress::factory(old.family())) && answers(wire).unwrap_or(false) {
             return Ok(());
         }
@@ -91,17 +90,16 @@ pub fn restore(wire: &mut dyn Wire) -> Result<(), Failure> {
 /// Whether 95 was acknowledged, asked up to [`RELOAD_TRIES`] times. An error only when nothing further can be
 /// asked.
 fn reload_with_patience(wire: &mut dyn Wire) -> Result<bool, Failure> {
-    let tried = "load the settings from EEPROM (95)";
     for _ in 0..RELOAD_TRIES {
         match wire.transact(number::RELOAD_SETTINGS, &[]) {
             Ok(_) => {
-                await_unit(wire, tried)?;
+                await_unit(wire, McpActMessage::Reload)?;
                 return Ok(true);
             }
             Err(error) if is_final(&error) || !went_out(&error) => {
-                return Err(error.failure(tried, wire.describe()));
+                return Err(error.failure(McpActMessage::Reload, wire.describe()));
             }
-            Err(_) => await_unit(wire, tried)?,
+            Err(_) => await_unit(wire, McpActMessage::Reload)?,
         }
     }
     Ok(false)
@@ -113,9 +111,9 @@ pub fn reload(wire: &mut dyn Wire) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::new(
-        "load the settings from EEPROM (95)",
+        McpActMessage::Reload,
         wire.describe(),
-        format!("no acknowledgement in {RELOAD_TRIES} tries"),
-        "Read the settings to see what the controller works with",
+        McpCauseMessage::NoAcknowledgement { tries: RELOAD_TRIES },
+        McpRemedyMessage::ReadSettings,
     ))
 }

@@ -5,6 +5,7 @@ use crate::tests::testing::{Answers, ScriptedTransport, Wiretap, ms, reply_to, s
 use brushwork_link::clock::{Clock, VirtualClock};
 use brushwork_link::exchange::Permit;
 use brushwork_link::exchange::*;
+use brushwork_link::messages::ActMessage;
 use brushwork_link::{Transport, TransportError};
 use brushwork_mcp_wire::packet_serial::{Address, Generation, Request, number};
 use std::cell::Cell;
@@ -307,7 +308,9 @@ fn an_unplugged_port_is_told_at_once_and_not_retried() {
     assert!(error.is_link_lost());
     assert_eq!(tap.writes().len(), 1);
     assert_eq!(
-        error.failure("read the main battery", "0x80 at /dev/test").to_string(),
+        error
+            .failure(ActMessage::Read { phrase: "read the main battery".to_owned() }, "0x80 at /dev/test")
+            .to_string(),
         "Could not read the main battery on 0x80 at /dev/test: the link is lost: the far end is gone (unplugged). \
          Check the cable and connect again."
     );

@@ -4,7 +4,9 @@ use crate::controller::driving;
 use crate::controller::registers::{mask, value_in};
 use crate::controller::stopping::{give_back, read_ramp, switch_on};
 use crate::controller::unit::MotionMind;
-use crate::messages::MotionMindDriverMessage;
+use crate::messages::{
+    MotionMindActMessage, MotionMindCauseMessage, MotionMindDriverMessage, MotionMindRemedyMessage,
+};
 use brushwork_link::Message;
 use brushwork_link::device::controller::{ArmCheck, Line};
 use brushwork_link::exchange::ExchangeError;
@@ -37,11 +39,9 @@ pub fn check(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<ArmCheck, Exc
         match hold(unit, line, function)? {
             Hold::AsItWas => {}
             Hold::SwitchedOn => warnings.push(MotionMindDriverMessage::LoopSwitchedOn.into()),
-            Hold::Moves => objections.push((
-                "its loop is switched off (DISABLEPID in FUNCTION), and the motor does not stand still when it is switched on"
-                    .to_owned(),
-                "See that nothing turns the motor, and lower PTERM and ITERM",
-            )),
+            Hold::Moves => {
+                objections.push((MotionMindCauseMessage::LoopMoves, MotionMindRemedyMessage::LowerGains));
+            }
         }
     }
     if objections.is_empty() {
@@ -51,43 +51,47 @@ pub fn check(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<ArmCheck, Exc
     }
     let reasons = objections
         .into_iter()
-        .map(|(came_back, remedy)| Failure::new("arm the motor", on.as_str(), came_back, remedy))
+        .map(|(came_back, remedy)| Failure::new(MotionMindActMessage::Arm, on.as_str(), came_back, remedy))
         .collect();
     Ok(ArmCheck { reasons, controller_timeout: None, warnings })
 }
 
 /// What speaks against it, each with its cure.
-fn objections(unit: &MotionMind, mode: i64, function: i64, status: i64) -> Vec<(String, &'static str)> {
+fn objections(
+    unit: &MotionMind,
+    mode: i64,
+    function: i64,
+    status: i64,
+) -> Vec<(MotionMindCauseMessage, MotionMindRemedyMessage)> {
     let is_function = |bit: u16| function & i64::from(bit) != 0;
     let is_status = |bit: u16| status & i64::from(bit) != 0;
     let mut found = Vec::new();
     if mode != i64::from(unit.mode().number()) {
         found.push((
-            format!("it is in mode {mode} now and was in {} when it was found", unit.mode()),
-            "Connect again",
+            MotionMindCauseMessage::OtherMode { now: mode, found: unit.mode() },
+            MotionMindRemedyMessage::ConnectAgain,
         ));
     }
     match unit.mode() {
         Mode::Serial | Mode::SerialPid => {}
         Mode::AnalogPid if is_function(function::ADSERIAL) => {}
-        Mode::AnalogPid => found.push((
-            "in mode 5 its setpoint is the analog input".to_owned(),
-            "Set ADSERIAL in FUNCTION, so that the setpoint comes over the serial line",
-        )),
+        Mode::AnalogPid => {
+            found.push((MotionMindCauseMessage::AnalogSetpoint, MotionMindRemedyMessage::SetAdserial));
+        }
         other @ (Mode::RadioControl
         | Mode::Analog
         | Mode::Buttons
         | Mode::FactoryRestore
         | Mode::FactoryTest) => found.push((
-            format!("in {other} it takes {}", driving::taken(other)),
-            "Set switches 2 to 4 for mode 3 or 4, and switch the power off and on",
+            MotionMindCauseMessage::Takes { mode: other, taken: driving::taken(other) },
+            MotionMindRemedyMessage::SetSwitches,
         )),
     }
     if is_status(status::BRAKE) {
-        found.push(("its brake input is at ground".to_owned(), "Release the brake input, J4 pin 12"));
+        found.push((MotionMindCauseMessage::Braked, MotionMindRemedyMessage::ReleaseBrake));
     }
     if is_status(status::TEMPFAULT) {
-        found.push(("it is too hot; its bridge is off".to_owned(), "Let it cool down below 80 °C"));
+        found.push((MotionMindCauseMessage::TooHot, MotionMindRemedyMessage::CoolDown));
     }
     found
 }

@@ -7,13 +7,15 @@ use crate::controller::speaker::{GAP, Speaker};
 use crate::controller::stopping;
 use crate::controller::unit::MotionMind;
 use crate::family::{MOTION_MIND, NAME, firmware_of};
-use crate::messages::MotionMindIdentityMessage;
+use crate::messages::{MotionMindCauseMessage, MotionMindIdentityMessage, MotionMindRemedyMessage};
+use brushwork_link::Message;
 use brushwork_link::device::StopBytes;
 use brushwork_link::device::controller::{Controller, DiscoverError, Line, Search};
 use brushwork_link::device::{Addresses, DeviceOptions};
 use brushwork_link::device::{Facts, Identity};
 use brushwork_link::exchange::{ExchangeError, RETRIES};
 use brushwork_link::failure::Failure;
+use brushwork_link::messages::{ActMessage, CauseMessage};
 use brushwork_motion_mind_wire::{Address, Command, Mode, Protocol, function, register_number as number};
 use std::time::Duration;
 
@@ -252,26 +254,19 @@ fn identify(line: &mut Line<'_>, mut speaker: Speaker, simulated: bool) -> Resul
 
 fn nothing_there(line: &mut Line<'_>, addresses: Addresses, heard_before: u64) -> DiscoverError {
     let heard = line.exchange().statistics().bytes_in - heard_before;
-    let asked = match addresses {
-        Addresses::Scan => "addresses 1 to 98".to_owned(),
-        Addresses::Only(address) => format!("address {address}"),
+    let asked: Message = match addresses {
+        Addresses::Scan => MotionMindCauseMessage::AllAddresses.into(),
+        Addresses::Only(address) => MotionMindCauseMessage::Address { address }.into(),
         Addresses::These(set) => {
             let each: Vec<_> = set.iter().map(|address| address.to_string()).collect();
-            format!("the addresses {}", each.join(", "))
+            CauseMessage::Addresses { listed: each.join(", ") }.into()
         }
-        Addresses::Factory => format!("address {}", Address::FACTORY.get()),
+        Addresses::Factory => MotionMindCauseMessage::Address { address: Address::FACTORY.get() }.into(),
     };
     let (came_back, remedy) = match heard {
-        0 => (
-            format!("nothing answered at {asked}, in binary or in ASCII"),
-            "Check that the controller has power, that the cable and the port are right, and the baud rate: 9600 or 19200 by switch 5, or what \
-             FUNCTION2 was set to",
-        ),
-        count => (
-            format!("{count} bytes came, but no Motion Mind, from {asked}"),
-            "Check the baud rate: 9600 or 19200 by switch 5, or what FUNCTION2 was set to",
-        ),
+        0 => (MotionMindCauseMessage::NothingAnswered { asked }, MotionMindRemedyMessage::CheckPowerAndPort),
+        count => (MotionMindCauseMessage::BytesCame { count, asked }, MotionMindRemedyMessage::CheckBaudRate),
     };
     let on = line.exchange().port();
-    DiscoverError::NothingThere(Failure::new("find a controller", on, came_back, remedy))
+    DiscoverError::NothingThere(Failure::new(ActMessage::FindController, on, came_back, remedy))
 }

@@ -9,7 +9,9 @@ use crate::controller::borrowed::{Borrowed, Ramp, STEEPEST};
 use crate::controller::registers::{mask, value_in};
 use crate::controller::speaker::{GAP, Speaker};
 use crate::controller::unit::MotionMind;
-use crate::messages::MotionMindDriverMessage;
+use crate::messages::{
+    MotionMindActMessage, MotionMindCauseMessage, MotionMindDriverMessage, MotionMindRemedyMessage,
+};
 use brushwork_link::Message;
 use brushwork_link::device::controller::Line;
 use brushwork_link::device::{StopBytes, UnitStop};
@@ -39,8 +41,6 @@ const DUTY_LIMIT: Duration = Duration::from_millis(1600);
 const BROKEN_INTO: Duration = Duration::from_millis(40);
 /// The longest reply is done within this: all registers in text, about 500 characters at 19,200 baud.
 const LATE_REPLY: Duration = Duration::from_millis(300);
-
-const CUT_POWER: &str = "Cut the motor power now: the motor may still be running";
 
 /// What stands a motor in a mode; nothing where serial commands do not move it.
 fn commands(mode: Mode) -> Option<Command> {
@@ -100,6 +100,9 @@ pub fn confirm(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<UnitStop, E
         let lateness = if exchange.is_late() { exchange.longest_turnaround() } else { Duration::ZERO };
         exchange.drain(quiet + lateness, watch)?;
     }
+    let failed = |came_back: Message| {
+        Failure::new(MotionMindActMessage::Stop, on, came_back, MotionMindRemedyMessage::CutPower)
+    };
     match stand(unit, line) {
         Ok(Ended::Stands) => stop.confirmed = true,
         Ok(Ended::SwitchedOff) => {
@@ -112,11 +115,11 @@ pub fn confirm(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<UnitStop, E
             stop.still_driven_by.push(MotionMindDriverMessage::LoopCalmed.into());
         }
         Ok(Ended::StillDriven) => {
-            stop.failures.push(Failure::new("stop the motor", on, "its drive is not 0", CUT_POWER));
+            stop.failures.push(failed(MotionMindCauseMessage::NotAtRest.into()));
         }
         Err(error) => {
             pass_on(&error)?;
-            stop.failures.push(Failure::new("stop the motor", on, error.full(), CUT_POWER));
+            stop.failures.push(failed(error.message()));
         }
     }
     Ok(stop)

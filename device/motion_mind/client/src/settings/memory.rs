@@ -7,6 +7,7 @@
 use brushwork_motion_mind_wire::numbers;
 
 use super::register_of;
+use crate::messages::{MotionMindActMessage, MotionMindCauseMessage, MotionMindRemedyMessage};
 use brushwork_link::failure::Failure;
 use brushwork_link::settings::{Difference, await_unit, diff};
 use brushwork_link::settings::{ReadReport, is_final, is_there, read_all, went_out};
@@ -43,7 +44,7 @@ pub fn save(wire: &mut dyn Wire, before: &ReadReport) -> Result<SaveReport, Fail
         wire.report_progress(done, words.len(), &format!("store {name}"));
         let stored = wire.transact(numbers::WRITE_STORE, &[i64::from(*number), *word]);
         if let Err(error) = stored {
-            let failure = error.failure(format!("store {name} in EEPROM"), wire.describe());
+            let failure = error.failure(MotionMindActMessage::Store { register: name }, wire.describe());
             if !stored_any && !went_out(&error) {
                 return Err(failure);
             }
@@ -76,7 +77,7 @@ fn judge(before: &ReadReport, after: &ReadReport) -> SaveReport {
 /// Starts the unit anew, which loads its EEPROM, and waits until it answers.
 pub fn reload(wire: &mut dyn Wire) -> Result<(), Failure> {
     reset(wire)?;
-    await_unit(wire, "load the settings from EEPROM (RESET)")
+    await_unit(wire, MotionMindActMessage::Reload)
 }
 
 fn reset(wire: &mut dyn Wire) -> Result<(), Failure> {
@@ -85,7 +86,7 @@ fn reset(wire: &mut dyn Wire) -> Result<(), Failure> {
         if went_out(&error) && !is_final(&error) {
             return Ok(());
         }
-        Err(error.failure("load the settings from EEPROM (RESET)", wire.describe()))
+        Err(error.failure(MotionMindActMessage::Reload, wire.describe()))
     })
 }
 
@@ -94,7 +95,7 @@ pub fn restore(wire: &mut dyn Wire) -> Result<(), Failure> {
     match wire.transact(numbers::RESTORE, &[]) {
         Ok(_) => {}
         Err(error) if went_out(&error) && !is_final(&error) => {}
-        Err(error) => return Err(error.failure("restore the factory values (RESTORE)", wire.describe())),
+        Err(error) => return Err(error.failure(MotionMindActMessage::Restore, wire.describe())),
     }
     let old = wire.address();
     if is_there(wire).is_ok() {
@@ -105,9 +106,9 @@ pub fn restore(wire: &mut dyn Wire) -> Result<(), Failure> {
     }
     wire.set_address(old);
     Err(Failure::new(
-        "restore the factory values (RESTORE)",
+        MotionMindActMessage::Restore,
         wire.describe(),
-        "no answer afterwards, neither at its address nor at 1",
-        "Check its power and connect again",
+        MotionMindCauseMessage::NoAnswerAfterwards,
+        MotionMindRemedyMessage::CheckPower,
     ))
 }

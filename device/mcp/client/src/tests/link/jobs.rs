@@ -18,6 +18,22 @@ use std::time::Duration;
 
 type Outcome = Result<(), Failure>;
 
+brushwork_values::messages! {
+    /// What the jobs of these tests are called and say.
+    enum JobSaid {
+        TryMotor "try the motor",
+        Read "read three values",
+        Sneak "sneak",
+        Wait "wait",
+        Write "write a gain",
+        Count "count",
+        DoJob "do the job",
+        FindStop "find the end stop",
+        ShaftStands "the shaft did not turn",
+        FreeIt "Free it",
+    }
+}
+
 /// The report of the one job that ended.
 fn ending(link: &Link) -> (&JobEnding, Option<bool>) {
     let reports: Vec<_> = link
@@ -34,7 +50,7 @@ fn ending(link: &Link) -> (&JobEnding, Option<bool>) {
 
 #[expect(clippy::needless_pass_by_value, reason = "for map_err")]
 fn fail(error: ExchangeError) -> Failure {
-    error.failure("do the job", "the bench")
+    error.failure(JobSaid::DoJob, "the bench")
 }
 
 /// Drives motor 1 at a quarter and watches it until something happens.
@@ -46,7 +62,7 @@ fn drive_for_ever(context: &mut JobContext<'_>) -> Outcome {
 }
 
 fn start(link: &mut Link, run: impl FnMut(&mut JobContext<'_>) -> Outcome + Send + 'static) -> JobTicket<()> {
-    link.handle.start(Job::moving("try the motor", Duration::from_secs(10), run)).unwrap()
+    link.handle.start(Job::moving(JobSaid::TryMotor, Duration::from_secs(10), run)).unwrap()
 }
 
 /// The last drive command that the unit took.
@@ -65,7 +81,7 @@ fn assert_stopped(link: &Link) {
 #[test]
 fn a_job_tells_its_progress_and_hands_back_its_result() {
     let mut link = Link::connected();
-    let job = Job::new("read three values", ms(5_000), |context| {
+    let job = Job::new(JobSaid::Read, ms(5_000), |context| {
         let mut values = Vec::new();
         for step in 0..3_u8 {
             context.progress(Some(f32::from(step) / 3.0), "reading");
@@ -100,7 +116,7 @@ fn a_job_that_moves_motors_needs_arming() {
 #[test]
 fn a_job_that_claims_to_move_nothing_cannot_move_anything_unarmed() {
     let mut link = Link::connected();
-    link.handle.start(Job::new("sneak", ms(1_000), drive_for_ever)).unwrap();
+    link.handle.start(Job::new(JobSaid::Sneak, ms(1_000), drive_for_ever)).unwrap();
     link.run_for(ms(500));
     assert!(matches!(ending(&link).0, JobEnding::Failed(_)));
     assert_eq!(link.bus().count(number::DUTY_M1), 0);
@@ -128,7 +144,7 @@ fn a_job_drives_in_the_words_of_the_window_and_its_setpoint_is_in_the_sample() {
 #[test]
 fn a_job_cannot_drive_unarmed() {
     let mut link = Link::connected();
-    let job = Job::new("sneak", ms(1_000), |context| {
+    let job = Job::new(JobSaid::Sneak, ms(1_000), |context| {
         context.drive(&Drive::both(DriveCommand::duty(0.25))).map_err(fail)?;
         Ok(())
     });
@@ -156,7 +172,7 @@ fn a_job_that_gives_up_ends_with_the_motors_stopped() {
     let mut link = Link::armed();
     start(&mut link, |context| {
         context.transact(number::DUTY_M1, &[8_192]).map_err(fail)?;
-        Err(Failure::new("find the end stop", "", "the shaft did not turn", "Free it"))
+        Err(Failure::new(JobSaid::FindStop, "", JobSaid::ShaftStands, JobSaid::FreeIt))
     });
     link.run_for(ms(500));
     assert!(matches!(ending(&link).0, JobEnding::Failed(_)));
@@ -238,7 +254,7 @@ fn a_frozen_window_stops_a_job_after_250_ms() {
 #[test]
 fn a_job_that_sleeps_is_woken_by_its_time_limit() {
     let mut link = Link::connected();
-    let job = Job::new("wait", ms(700), |context| {
+    let job = Job::new(JobSaid::Wait, ms(700), |context| {
         context.sleep(ms(60_000)).map_err(fail)?;
         Ok(())
     });
@@ -305,7 +321,7 @@ fn a_fault_seen_between_the_exchanges_of_a_job_ends_it() {
 fn signals_are_read_while_a_job_runs_unless_it_wants_the_line_for_itself() {
     for (polling, least, most) in [(true, 8, 12), (false, 0, 1)] {
         let mut link = Link::connected();
-        let job = Job::new("read for a second", ms(5_000), move |context| {
+        let job = Job::new(JobSaid::Read, ms(5_000), move |context| {
             context.set_polling(polling);
             let end = context.now() + ms(1_000);
             while context.now() < end {
@@ -337,7 +353,7 @@ fn a_panic_of_a_job_that_moves_nothing_still_stops_what_was_armed() {
     let mut link = Link::armed();
     link.drive(0.5);
     link.run_for(ms(30));
-    link.handle.start(Job::<()>::new("count", ms(1_000), |_| panic!("a bug"))).unwrap();
+    link.handle.start(Job::<()>::new(JobSaid::Count, ms(1_000), |_| panic!("a bug"))).unwrap();
     link.run_for(ms(300));
     assert!(matches!(ending(&link).0, JobEnding::Panicked(word) if word == "a bug"));
     assert_stopped(&link);
@@ -348,7 +364,7 @@ fn a_settings_job_leaves_an_armed_screen_armed() {
     let mut link = Link::armed();
     link.drive(0.5);
     link.run_for(ms(30));
-    let job = Job::new("write a gain", ms(1_000), |context| {
+    let job = Job::new(JobSaid::Write, ms(1_000), |context| {
         context.transact(number::SET_VELOCITY_PID_M1, &[0, 0, 0, 0]).map_err(fail)?;
         Ok(())
     });
@@ -382,7 +398,7 @@ fn a_cancel_ends_its_own_job_and_no_other() {
     let mut link = Link::connected();
     let wait = |context: &mut JobContext<'_>| context.sleep(ms(100)).map_err(fail);
     let [first, second] =
-        ["wait", "wait"].map(|name| link.handle.start(Job::new(name, ms(1_000), wait)).unwrap());
+        [(); 2].map(|()| link.handle.start(Job::new(JobSaid::Wait, ms(1_000), wait)).unwrap());
     second.cancel();
     link.run_for(ms(500));
     let ended = link.events.iter().filter_map(|(_, event)| match event {
