@@ -5,12 +5,14 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
+#[cfg(not(target_family = "wasm"))]
 use std::time::Duration;
 
 use brushwork_link::device::Stopper;
 use egui::Context;
 
 /// How long the window may take to close. Each link takes up to two seconds to stop its motors and end.
+#[cfg(not(target_family = "wasm"))]
 const PATIENCE: Duration = Duration::from_secs(15);
 
 /// Whether the program was asked to end, and what has to be stopped then. Clones are the same.
@@ -26,7 +28,8 @@ struct Inner {
 
 impl EndBySignal {
     /// Takes over the signals for the rest of the program's life. Where the system refuses, they end the program as they
-    /// always do, and the controllers' own time-outs stop the motors.
+    /// always do, and the controllers' own time-outs stop the motors. A web page has no signals.
+    #[cfg(not(target_family = "wasm"))]
     pub fn install() -> Self {
         let end = Self::default();
         let of_handler = end.clone();

@@ -46,19 +46,12 @@ pub enum FileAnswer {
 impl FileDialog {
     /// Opens the dialog.
     pub fn ask(action: FileAction, kind: FileKind) -> Self {
-        Self::answered_by(move || {
-            let extensions: Vec<&str> = kind.extension.split(',').collect();
-            let dialog = rfd::FileDialog::new().add_filter(kind.title, &extensions);
-            match action {
-                FileAction::Open => dialog.pick_file(),
-                FileAction::Save { name } => dialog.set_file_name(name).save_file(),
-            }
-        })
+        Self::answered_by(move || desktop::choose(action, &kind))
     }
 
     /// Asks for a folder.
     pub fn ask_folder() -> Self {
-        Self::answered_by(|| rfd::FileDialog::new().pick_folder())
+        Self::answered_by(desktop::choose_folder)
     }
 
     fn answered_by(choose: impl FnOnce() -> Option<PathBuf> + Send + 'static) -> Self {
@@ -79,6 +72,38 @@ impl FileDialog {
             Ok(None) | Err(TryRecvError::Disconnected) => FileAnswer::None,
             Err(TryRecvError::Empty) => FileAnswer::Waiting,
         }
+    }
+}
+
+#[cfg(not(target_family = "wasm"))]
+mod desktop {
+    use super::{FileAction, FileKind, PathBuf};
+
+    pub(super) fn choose(action: FileAction, kind: &FileKind) -> Option<PathBuf> {
+        let extensions: Vec<&str> = kind.extension.split(',').collect();
+        let dialog = rfd::FileDialog::new().add_filter(&kind.title, &extensions);
+        match action {
+            FileAction::Open => dialog.pick_file(),
+            FileAction::Save { name } => dialog.set_file_name(name).save_file(),
+        }
+    }
+
+    pub(super) fn choose_folder() -> Option<PathBuf> {
+        rfd::FileDialog::new().pick_folder()
+    }
+}
+
+/// A web page gets contents, never a path.
+#[cfg(target_family = "wasm")]
+mod desktop {
+    use super::{FileAction, FileKind, PathBuf};
+
+    pub(super) fn choose(_: FileAction, _: &FileKind) -> Option<PathBuf> {
+        None
+    }
+
+    pub(super) fn choose_folder() -> Option<PathBuf> {
+        None
     }
 }
 

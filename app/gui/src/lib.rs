@@ -30,6 +30,7 @@ pub mod motion_mind;
 pub mod opener;
 pub mod parts;
 pub mod remember;
+#[cfg(not(target_family = "wasm"))]
 pub mod run;
 pub mod screens;
 pub mod shell;
