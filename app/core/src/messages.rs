@@ -66,3 +66,10 @@ messages! {
         TurnEncoder "Its encoder counts the wrong way: change round the two motor leads, or the encoder's A and B",
     }
 }
+
+messages! {
+    /// What is said after a tuning run.
+    pub enum TuneMessage {
+        LeftOff "The controller's loop did not hold the motor still with the old gains, so its output is left switched off (DISABLEPID in FUNCTION, in RAM): the motor stands, but nothing holds it. The next Arm or `drive` switches the loop on again, and so does a reset of the unit.",
+    }
+}

@@ -191,6 +191,12 @@ messages! {
 messages! {
     /// What came back of what was tried, as a clause.
     pub enum CauseMessage {
+        NoWayIntoLoader "there is no way into its firmware loader from here",
+        BytesNotTaken "bytes are not taken as they are here; put the command together by its number",
+        EncodersUntold "this controller does not tell a job its encoders",
+        PowerUntold "this controller does not tell a job what a motor draws",
+        SpeedUntold "this controller does not tell a job its speed",
+        BatteryUntold "this controller does not tell a job its battery",
         NoFamily "this program has no family of controllers",
         ListUnreadable "the system's list cannot be read",
         NoSuchUnit "no unit answered there when the link was opened",
@@ -248,5 +254,13 @@ messages! {
         ReportBug "Make sure that the motors stand still, connect again, and report this as a bug",
         LeftOut { seconds: u64 } "It is left out for {seconds} s, then tried again",
         OrElsewhere { remedy: Message, other: &'static str } "{remedy}. {other}",
+    }
+}
+
+messages! {
+    /// What to do about a port that may not be opened.
+    pub enum PortMessage {
+        JoinGroup { group: String } "The port belongs to the group {group}: run `sudo usermod -aG {group} $USER`, then log out and in again.",
+        GiveRight "Give your user the right to open serial ports, then try again.",
     }
 }

@@ -71,3 +71,34 @@ fn tables_of_messages_stand_in_files_of_that_name() {
         .collect();
     assert_eq!(elsewhere, Vec::<String>::new());
 }
+
+/// The crates whose sentences are all messages, and the names of fields that hold some.
+const TYPED: [&str; 5] =
+    ["device/link/", "device/family/", "device/mcp/client/", "device/motion_mind/client/", "app/core/"];
+const SENTENCES: [&str; 9] = [
+    "sentence",
+    "warnings",
+    "notes",
+    "came_back",
+    "remedy",
+    "cure",
+    "left_out",
+    "upgraded",
+    "still_driven_by",
+];
+
+#[test]
+fn what_people_read_is_no_bare_text() {
+    let is_typed = |path: &String| TYPED.iter().any(|krate| path.starts_with(krate));
+    let holds_text = |line: &str| {
+        let field = line.trim_start().trim_start_matches("pub ").split_once(": ");
+        field.is_some_and(|(name, kind)| SENTENCES.contains(&name) && kind.contains("String"))
+    };
+    let mut bare = Vec::new();
+    for path in workspace::rust_files().into_iter().filter(is_typed) {
+        let source = workspace::read(&path);
+        let lines = source.lines().filter(|line| holds_text(line));
+        bare.extend(lines.map(|line| format!("{path}: {}", line.trim())));
+    }
+    assert_eq!(bare, Vec::<String>::new());
+}

@@ -32,7 +32,7 @@ pub fn judge(identity: &Identity, readings: &Readings) -> Judged {
             ..Evidence::of(status, identity)
         };
         let diagnosis = diagnose(&evidence);
-        Said { sentence: diagnosis.sentence(), data: json!(diagnosis.findings) }
+        Said { sentence: diagnosis.sentence().to_string(), data: json!(diagnosis.findings) }
     });
     Judged { diagnosis, homed: settings.zip(pins.as_deref()).map(|(settings, pins)| homed(settings, pins)) }
 }

@@ -4,6 +4,7 @@ mod args;
 mod replay;
 mod words;
 
+use brushwork_core::messages::TuneMessage;
 use std::time::{Duration, Instant};
 
 use brushwork_link::{ArmScope, Event, Job, JobEnding, SettingsTable};
@@ -24,7 +25,7 @@ use brushwork_core::keep::TrialKeeper;
 use brushwork_core::tune::law::{Report, Request as TuneRequest};
 use brushwork_core::tune::live::Live;
 use brushwork_core::tune::{
-    LEFT_OFF, Restored, Slot, Target, file, leaves_off, prepare, restore, run as tuning_job, take,
+    Restored, Slot, Target, file, leaves_off, prepare, restore, run as tuning_job, take,
 };
 
 /// How long arming and the short jobs may take.
@@ -111,7 +112,7 @@ fn session(
         say("The old gains and settings are in force again, as reading them back has shown.");
     }
     if restored.is_ok_and(|restored| restored.loop_left_off) {
-        say(LEFT_OFF);
+        say(TuneMessage::LeftOff);
     }
     ran.and(restored)
 }

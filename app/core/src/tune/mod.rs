@@ -112,11 +112,6 @@ pub fn trial(target: Target, wanted: TrialRequest, found: &Slot<Trial>, live: &L
     })
 }
 
-/// What is said of a loop that was left off.
-pub const LEFT_OFF: &str = "The controller's loop did not hold the motor still with the old gains, so its output is left switched off \
-                            (DISABLEPID in FUNCTION, in RAM): the motor stands, but nothing holds it. The next Arm or `drive` switches \
-                            the loop on again, and so does a reset of the unit.";
-
 /// Whether a run has left the loop of a Motion Mind off, since it found the machine to be such that a loop could drive the motor away.
 pub fn leaves_off(report: Option<&Report>, trial: Option<&Trial>) -> bool {
     report.is_some_and(|report| report.causes.contains(&Cause::LoopOff))

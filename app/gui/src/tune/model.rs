@@ -1,5 +1,6 @@
 //! Tuning as the window keeps it: what is set, what runs, and the runs so far, for each loop of each motor.
 
+use brushwork_core::messages::TuneMessage;
 use brushwork_core::tune::law::{AnyRegisters, Report, Request as TuneRequest, Setup, Trial};
 use brushwork_link::{Event, Identity, Sample, SettingValue, Stream};
 use brushwork_tuning::axis::EncoderClass;
@@ -449,7 +450,7 @@ impl Tuning {
             effects.push(owed_effect());
         }
         if ended.loop_left_off {
-            effects.push(Effect::Say(Gravity::Warning, brushwork_core::tune::LEFT_OFF.to_owned()));
+            effects.push(Effect::Say(Gravity::Warning, TuneMessage::LeftOff.to_string()));
         }
         effects
     }

@@ -52,7 +52,8 @@ fn a_blocked_shaft_is_told_as_a_current_limit_while_the_motor_drives() {
     };
     let sentence = evidence.expect("the status was read");
     assert!(
-        sentence.contains("motor 1 is at its current limit (") && sentence.contains("Free the shaft"),
+        sentence.to_string().contains("motor 1 is at its current limit (")
+            && sentence.to_string().contains("Free the shaft"),
         "{sentence}"
     );
     bench.press("Device Status");

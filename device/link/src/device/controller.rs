@@ -13,6 +13,7 @@ use super::status::StatusReport;
 use super::stop::{StopBytes, UnitStop};
 use crate::exchange::{Exchange, ExchangeError, Permit, RETRIES, Reply, Watch};
 use crate::failure::Failure;
+use crate::messages::CauseMessage;
 use crate::transport::Stream;
 use brushwork_values::{Message, Motor, Value};
 use std::cell::Cell;
@@ -104,8 +105,7 @@ pub trait Controller: Send {
     /// Sends the unit into its firmware loader, after which it understands nothing of this family any more. The user has accepted
     /// the risk.
     fn enter_loader(&mut self, _line: &mut Line<'_>) -> Result<(), ExchangeError> {
-        let what = "there is no way into its firmware loader from here".to_owned();
-        Err(ExchangeError::Impossible { what })
+        Err(ExchangeError::impossible(CauseMessage::NoWayIntoLoader))
     }
 
     /// Sends one command of the family's protocol.
@@ -118,8 +118,7 @@ pub trait Controller: Send {
 
     /// Sends bytes as a person typed them, one command at a time, and gives what came back, whatever it was.
     fn raw(&mut self, _line: &mut Line<'_>, _bytes: &[u8]) -> Result<Vec<u8>, ExchangeError> {
-        let what = "bytes are not taken as they are here; put the command together by its number".to_owned();
-        Err(ExchangeError::Impossible { what })
+        Err(ExchangeError::impossible(CauseMessage::BytesNotTaken))
     }
 
     /// Whether typed bytes can undo what [`Controller::check_arming`] found.

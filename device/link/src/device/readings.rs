@@ -2,6 +2,7 @@
 
 use super::job_context::JobContext;
 use crate::exchange::{ExchangeError, Span};
+use crate::messages::CauseMessage;
 use brushwork_values::Motor;
 
 /// What a motor gets and draws.
@@ -19,27 +20,27 @@ pub struct Power {
 pub trait Readings: Send + Sync {
     /// Both encoder counts, as their 32 bits, and when they were read.
     fn encoders(&self, _context: &mut JobContext<'_>) -> Result<([i32; 2], Span), ExchangeError> {
-        not_reported("its encoders")
+        not_reported(CauseMessage::EncodersUntold)
     }
 
     /// What a motor gets and draws.
     fn power(&self, _context: &mut JobContext<'_>, _motor: Motor) -> Result<Power, ExchangeError> {
-        not_reported("what a motor draws")
+        not_reported(CauseMessage::PowerUntold)
     }
 
     /// The speed of a motor, counts/s.
     fn speed(&self, _context: &mut JobContext<'_>, _motor: Motor) -> Result<f64, ExchangeError> {
-        not_reported("its speed")
+        not_reported(CauseMessage::SpeedUntold)
     }
 
     /// The main battery, V.
     fn battery(&self, _context: &mut JobContext<'_>) -> Result<f64, ExchangeError> {
-        not_reported("its battery")
+        not_reported(CauseMessage::BatteryUntold)
     }
 
     /// Whether the unit reports an over-voltage of the main battery.
     fn is_battery_high(&self, _context: &mut JobContext<'_>) -> Result<bool, ExchangeError> {
-        not_reported("its battery")
+        not_reported(CauseMessage::BatteryUntold)
     }
 
     /// Whether a duty is a current command, so that no speed follows from it.
@@ -48,8 +49,8 @@ pub trait Readings: Send + Sync {
     }
 }
 
-fn not_reported<T>(what: &str) -> Result<T, ExchangeError> {
-    Err(ExchangeError::Impossible { what: format!("this controller does not tell a job {what}") })
+fn not_reported<T>(what: CauseMessage) -> Result<T, ExchangeError> {
+    Err(ExchangeError::impossible(what))
 }
 
 /// Of a family that tells jobs nothing.

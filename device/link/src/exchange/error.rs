@@ -102,7 +102,7 @@ pub enum ExchangeError {
     #[error("{what}")]
     Impossible {
         /// Why, as a clause: "it has one motor".
-        what: String,
+        what: Message,
     },
     /// The values do not fit the command.
     #[error("the values do not fit the command")]
@@ -211,6 +211,11 @@ impl ExchangeError {
             Self::Encode { .. } => RemedyMessage::StayInRange,
             Self::Transport { .. } => RemedyMessage::CheckCable,
         }
+    }
+
+    /// What the controller cannot do, and why.
+    pub fn impossible(what: impl Into<Message>) -> Self {
+        Self::Impossible { what: what.into() }
     }
 
     /// The failure for the user, with what was tried and on what.

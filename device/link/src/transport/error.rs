@@ -1,5 +1,7 @@
 //! What is said of a text that names no controller, and of a port that cannot be opened.
 
+use brushwork_values::Message;
+
 /// Text that names no target.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TargetError {
@@ -59,7 +61,7 @@ pub enum OpenError {
         /// The device.
         path: String,
         /// Which group to join and how.
-        remedy: String,
+        remedy: Message,
     },
     /// Another program holds the port.
     #[error(

@@ -1,6 +1,7 @@
 //! Why a serial port refuses, and what to do about it: rights, another program, no such device.
 
 use super::ports::list_ports;
+use crate::messages::PortMessage;
 use std::path::Path;
 
 /// Whether the system knows a device of that name.
@@ -14,12 +15,10 @@ pub(super) fn exists(path: &str) -> bool {
 }
 
 /// What to do when opening is not allowed: the group that owns the device, and how to join it.
-pub(super) fn permission_remedy(path: &str) -> String {
+pub(super) fn permission_remedy(path: &str) -> PortMessage {
     match owning_group(path) {
-        Some(group) => format!(
-            "The port belongs to the group {group}: run `sudo usermod -aG {group} $USER`, then log out and in again."
-        ),
-        None => "Give your user the right to open serial ports, then try again.".to_owned(),
+        Some(group) => PortMessage::JoinGroup { group },
+        None => PortMessage::GiveRight,
     }
 }
 
@@ -87,7 +86,7 @@ mod tests {
         assert_eq!(group_name(groups, 20), Some("dialout"));
         assert_eq!(group_name(groups, 21), None);
         let file = tempfile::NamedTempFile::new().unwrap();
-        let remedy = permission_remedy(file.path().to_str().unwrap());
+        let remedy = permission_remedy(file.path().to_str().unwrap()).to_string();
         assert!(remedy.contains("sudo usermod -aG") && remedy.contains("log out"), "{remedy}");
     }
 }

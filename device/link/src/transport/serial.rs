@@ -101,7 +101,7 @@ fn explain(path: &str, baud: u32, error: &serialport::Error) -> OpenError {
     let detail = error.description.clone();
     match error.kind {
         ErrorKind::Io(io::ErrorKind::PermissionDenied) => {
-            OpenError::Permission { remedy: refused::permission_remedy(&path), path }
+            OpenError::Permission { remedy: refused::permission_remedy(&path).into(), path }
         }
         ErrorKind::Io(io::ErrorKind::NotFound) => OpenError::NotFound { path },
         ErrorKind::NoDevice if refused::exists(&path) => OpenError::Busy {

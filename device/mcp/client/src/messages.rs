@@ -100,6 +100,15 @@ messages! {
         OneByteCame { asked: Message } "one byte came, but no packet serial, from {asked}",
         BytesCame { count: u64, asked: Message } "{count} bytes came, but no packet serial, from {asked}",
         AllAddresses "addresses 0x80 to 0x87",
+        OtherValues { command: u8 } "the values that came are not those of command {command}",
+        LoaderByUpdate "the firmware loader is entered by an update alone, after its risk was accepted",
+        NoLoaderOverCan "the firmware loader cannot be entered over the CAN bus; connect over USB",
+        HeartbeatNotKept "the node did not keep whose heartbeat it should watch",
+        NothingToRead { id: u16, name: &'static str } "nothing can be read under the number {id} ({name})",
+        EStopIsSet "the E-stop is still set: it is pressed, or its reset is locked to the hardware",
+        NoScripts { family: &'static str } "a {family} runs no scripts",
+        DutyOutside { duty: f64 } "a duty of {duty} is not between -1 and 1",
+        DutyChangeOutside { accel_duty_per_s: f64, highest: f64 } "a duty change of {accel_duty_per_s}/s is not between 0 and {highest:.1}/s",
         Address { address: u8 } "address 0x{address:02X}",
         NoNodeAnswered "no node of the bus answered",
         NodeSilent { id: u8 } "node {id} did not answer",
@@ -156,5 +165,92 @@ messages! {
         PerhapsErasing "It may be erasing its memory: leave its power on for a minute. Then switch it off and on, and resume the update",
         WithoutFirmware "The controller has no firmware now and waits for it in its loader: switch it off and on, and resume the update with the same file",
         Complete "The whole image is there: switch the controller off and on, then connect",
+    }
+}
+
+messages! {
+    /// Why the motors do not run, as a whole.
+    pub enum DiagnosisMessage {
+        NothingFound "Nothing that can be read keeps the motors from running: arm a screen and drive them.",
+        Because { effect: Message, what: Message, more: Message, cure: Message } "{effect}: {what}{more}. {cure}.",
+        NoneRun "The motors do not run",
+        SomeDoNotMove "Some commands do not move the motors",
+        Limited "The motors run with limits",
+        OneMore " (and 1 more reason)",
+        SomeMore { others: usize } " (and {others} more reasons)",
+    }
+}
+
+messages! {
+    /// One reason, as a clause.
+    pub enum FindingMessage {
+        OneMotor { motor: usize } "motor {motor}",
+        BothMotors "both motors",
+        Minimum "minimum",
+        Maximum "maximum",
+        Reported { title: &'static str } "the controller reports: {title}",
+        ReportedVolts { title: &'static str, volts: f64 } "the controller reports: {title} (now {volts:.1} V)",
+        EmergencyStop "the emergency stop is active (E-Stop)",
+        BoardIsAt { celsius: f64, title: &'static str } "the board is at {celsius:.1} °C ({title})",
+        LessCurrent { what: Message } "{what}, so its current limit is reduced",
+        BatteryAbove { name: &'static str, volts: f64, limit: f64, title: &'static str } "the {name} battery is at {volts:.1} V, above its maximum of {limit:.1} V ({title})",
+        BatteryBelow { name: &'static str, volts: f64, limit: f64, title: &'static str } "the {name} battery is at {volts:.1} V, below its minimum of {limit:.1} V ({title})",
+        CurrentLimit { motor: u8 } "motor {motor} is at its current limit",
+        CurrentLimitNow { motor: u8, amps: f64 } "motor {motor} is at its current limit ({amps:.1} A now)",
+        AtSwitch { motor: u8 } "motor {motor} is at its home or limit switch",
+        SerialNowhere "serial is in none of the three priority levels, so the inputs alone command the motors",
+        NoSerialTimeout "the serial time-out is 0, so the motors would run on without this program and are not armed",
+        NoTimeout { stream: Stream } "the time-out of {stream} is 0, so the motors would run on without this program and are not armed",
+        AutorunScript { delay_ms: i64 } "a script that starts {delay_ms} ms after power-up may be at work and command the motors itself",
+        Script "a script is at work and commands the motors itself",
+        NoQpps { motors: Message } "the QPPS of {motors} is 0, and speed and position commands are scaled by it",
+        NoTravel { motors: Message, min: i64, max: i64 } "the position limits of {motors} ({min} to {max}) leave no room for position commands",
+        NoGains { motors: Message } "the position gains P, I and D of {motors} are all 0",
+        Bridged "both channels are bridged for one motor, so commands to motor 2 do nothing",
+        PinStops { pin: String, end: Message, motors: Message } "{pin} is at its {end}, whose action stops {motors}",
+        PinLetsCoast { pin: String, end: Message, motors: Message } "{pin} is at its {end}, whose action lets {motors} coast",
+        ForwardLimit { pin: String, end: Message, motors: Message } "{pin} is at its {end}, a forward limit of {motors}",
+        BackwardLimit { pin: String, end: Message, motors: Message } "{pin} is at its {end}, a backward limit of {motors}",
+        PinEStops { pin: String, end: Message } "{pin} is at its {end}, whose action is an emergency stop",
+        AnalogCommands { names: String, level: usize, serial: usize } "the analog input {names} commands them alone (priority level {level}, Serial level {serial})",
+        PulsesForGood { names: String, level: usize, serial: usize } "the pulse input {names} commands them alone once pulses have come, with a time-out of 0, for good (priority level {level}, Serial level {serial})",
+        PulsesMeanwhile { names: String, level: usize, serial: usize } "the pulse input {names} commands them alone for as long as pulses come (priority level {level}, Serial level {serial})",
+    }
+}
+
+messages! {
+    /// What to do about a reason, as a sentence without its full stop.
+    pub enum CureMessage {
+        CheckBridge "Check the motor and its leads for a short circuit, then restart the controller; if it stays, the bridge is damaged",
+        CheckErrorLimits "Check encoder, wiring and the error limits; the motor's next command clears the fault",
+        LookForBlock "Look for a blocked shaft or a short circuit, then restart the controller",
+        RaiseSpeedLimit "Look for a load that is too heavy, or raise the speed error limit",
+        RaisePositionLimit "Look for a load that is too heavy, or raise the position error limit",
+        CheckCanBus "Check the CAN bus: its wiring, terminators and rate",
+        CompareSettings "Read the settings and compare them with a backup: something was wrong at start-up",
+        BrakeGently "Decelerate more gently, or raise the minimum current",
+        RestartAfterEStop "Release it, then restart the controller: its reset is set to hardware",
+        ResetAfterEStop "Release it, then reset it on the Device Status screen",
+        ReleaseEStop "Release it: the reset is automatic",
+        ResetOrRestart "Release it, then reset it or restart the controller",
+        CoolBelow100 "Let the board cool below 100 °C",
+        CoolBelow85 "Let the board cool below 85 °C",
+        BringBetween { name: &'static str } "Bring the {name} battery between its limits and restart the controller",
+        LowerVoltage "Lower the main battery voltage or raise its maximum",
+        Charge "Charge the main battery or lower its minimum",
+        FreeShaft "Free the shaft or take load off, or raise the motor's current limit",
+        LeaveSwitch "Drive away from the switch, or open it",
+        SetSerialLevel "Set a priority level to Serial in General Settings",
+        SetTimeout "Set it in General Settings, to 1 s for example",
+        EndAutorun "Press Stop All, which ends it, or set the script autorun delay to 0",
+        EndScript "Press Stop All, which ends it",
+        MeasureQpps "Measure the speed at full duty and set QPPS to it",
+        SetTravel "Set the lowest and the highest position",
+        TunePosition "Tune the position loop, or set P",
+        CommandMotor1 "Command motor 1, or switch bridging off before two motors are wired",
+        LeaveEnd { end: Message } "Take the input away from its {end}, or change its {end} action",
+        DriveBackwards "Drive backwards",
+        DriveForwards "Drive forwards",
+        RaiseSerial { kind: String, pin: String } "Put Serial on a level above {kind}, or take the motor away from {pin}",
     }
 }

@@ -3,6 +3,7 @@
 //! Two gates stand here, since every packet passes: what can move a motor needs arming, and what is a guess about the
 //! wire goes to simulated controllers only.
 
+use crate::messages::McpCauseMessage;
 use crate::{firmware_of, packet_address, unit_address};
 use brushwork_link::exchange::{
     Exchange, ExchangeError, Fault, Judgement, Outgoing, Permit, RETRIES, Reply, Unwatched, Watch,
@@ -49,10 +50,9 @@ pub fn typed<const LAYOUT: u8>(
     command: Typed<LAYOUT>,
     values: Values,
 ) -> Result<Read<LAYOUT>, ExchangeError> {
-    command.reply(values).ok_or_else(|| {
-        let what = format!("the values that came are not those of command {}", command.number());
-        ExchangeError::Impossible { what }
-    })
+    command
+        .reply(values)
+        .ok_or_else(|| ExchangeError::impossible(McpCauseMessage::OtherValues { command: command.number() }))
 }
 
 /// Commands of packet serial whose fields the compiler knows, on every [`Wire`].
@@ -82,9 +82,7 @@ pub fn gate(ask: &Ask<'_>) -> Result<&'static Form, ExchangeError> {
         return Err(ExchangeError::Unproven { command: title(), why });
     }
     if form.effect == Effect::Loader && !ask.permit.loader {
-        let what =
-            "the firmware loader is entered by an update alone, after its risk was accepted".to_owned();
-        return Err(ExchangeError::Impossible { what });
+        return Err(ExchangeError::impossible(McpCauseMessage::LoaderByUpdate));
     }
     let permitted = match form.effect {
         Effect::Script => ask.permit.script,

@@ -204,7 +204,7 @@ fn ask(line: &mut Line<'_>, text: &str) -> Result<(String, Span), ExchangeError>
 }
 
 fn impossible<T>() -> Result<T, ExchangeError> {
-    Err(ExchangeError::Impossible { what: "this controller has no such thing".to_owned() })
+    Err(ExchangeError::impossible(EchoMessage::NoSuchThing))
 }
 
 struct EchoSearch;
@@ -242,6 +242,7 @@ brushwork_values::messages! {
     /// What the family says.
     pub enum EchoMessage {
         SpeedsAlone "it takes speeds alone",
+        NoSuchThing "this controller has no such thing",
         Save "save",
         Reload "reload",
         Restore "restore the defaults",

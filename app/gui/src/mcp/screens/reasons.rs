@@ -1,5 +1,6 @@
 //! The one sentence that says why the motors do not run and what to do, and the reasons behind it.
 
+use brushwork_core::words::capital;
 use brushwork_mcp_client::diagnosis::{Finding, Hindrance, diagnose};
 use egui::{Frame, Label, Margin, RichText, Role, Stroke, Ui, WidgetInfo, vec2};
 
@@ -21,7 +22,7 @@ pub fn reasons_ui(ui: &mut Ui, connection: &Connection, commands: &mut Commands)
         .inner_margin(Margin::symmetric(10, 8));
     frame.show(ui, |ui| {
         ui.set_width(ui.available_width());
-        row_ui(ui, state, RichText::new(diagnosis.sentence()).strong(), "Diagnosis");
+        row_ui(ui, state, RichText::new(diagnosis.sentence().to_string()).strong(), "Diagnosis");
         for finding in diagnosis.findings.iter().skip(1) {
             row_ui(ui, state_of(finding.hindrance), RichText::new(in_full(finding)), "Another reason");
         }
@@ -51,11 +52,7 @@ fn row_ui(ui: &mut Ui, state: IndicatorState, text: RichText, name: &str) {
 }
 
 fn in_full(finding: &Finding) -> String {
-    let mut what = finding.what.clone();
-    if let Some(first) = what.get(..1).map(str::to_uppercase) {
-        what.replace_range(..1, &first);
-    }
-    format!("{what}. {}.", finding.cure)
+    format!("{}. {}.", capital(&finding.what.to_string()), finding.cure)
 }
 
 const fn state_of(hindrance: Hindrance) -> IndicatorState {

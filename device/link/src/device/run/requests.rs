@@ -285,8 +285,7 @@ impl DeviceLoop {
         if self.armed.is_none() || !undermines || self.halt_and_confirm(DisarmReason::SettingsChanged) {
             return Ok(());
         }
-        let what = "the motors could not be stopped first".to_owned();
-        Err(ExchangeError::Impossible { what })
+        Err(ExchangeError::impossible(CauseMessage::NotStopped))
     }
 
     /// What a raw command of a window or a job means for stopping: a script may run now.

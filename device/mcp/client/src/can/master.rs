@@ -2,6 +2,7 @@
 
 use crate::can::access::{read, write};
 use crate::can::place::Place;
+use crate::messages::McpCauseMessage;
 use brushwork_canopen::NodeId;
 use brushwork_canopen::nmt::objects;
 use brushwork_link::device::controller::Line;
@@ -21,8 +22,7 @@ impl Place {
         write(line, self, objects::CONSUMER_HEARTBEAT, 1, &value)?;
         let kept = read(line, self, objects::CONSUMER_HEARTBEAT, 1)?.0;
         if kept != value {
-            let what = "the node did not keep whose heartbeat it should watch".to_owned();
-            return Err(ExchangeError::Impossible { what });
+            return Err(ExchangeError::impossible(McpCauseMessage::HeartbeatNotKept));
         }
         Ok(())
     }

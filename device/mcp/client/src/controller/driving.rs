@@ -1,5 +1,6 @@
 //! Drive commands as packets (MCP manual 2.4.9).
 
+use crate::messages::McpCauseMessage;
 use brushwork_link::device::{Drive, DriveCommand};
 use brushwork_link::exchange::ExchangeError;
 use brushwork_mcp_wire::packet_serial::{Address, Generation, Request, number, scale};
@@ -144,7 +145,7 @@ fn buffer(queued: bool) -> i64 {
 
 fn raw_duty(duty: f64) -> Result<i64, ExchangeError> {
     if !(-1.0..=1.0).contains(&duty) {
-        return Err(impossible(format!("a duty of {duty} is not between -1 and 1")));
+        return Err(ExchangeError::impossible(McpCauseMessage::DutyOutside { duty }));
     }
     Ok((duty * scale::FULL_DUTY_RAW as f64).round() as i64)
 }
@@ -153,15 +154,10 @@ fn raw_accel(accel_duty_per_s: f64) -> Result<i64, ExchangeError> {
     let raw = (accel_duty_per_s * scale::DUTY_ACCEL_RAW_PER_SECOND).round();
     if !(0.0..=scale::MAX_DUTY_ACCEL_RAW as f64).contains(&raw) {
         let highest = scale::MAX_DUTY_ACCEL_RAW as f64 / scale::DUTY_ACCEL_RAW_PER_SECOND;
-        return Err(impossible(format!(
-            "a duty change of {accel_duty_per_s}/s is not between 0 and {highest:.1}/s"
-        )));
+        let what = McpCauseMessage::DutyChangeOutside { accel_duty_per_s, highest };
+        return Err(ExchangeError::impossible(what));
     }
     Ok(raw as i64)
-}
-
-fn impossible(what: String) -> ExchangeError {
-    ExchangeError::Impossible { what }
 }
 
 #[cfg(test)]

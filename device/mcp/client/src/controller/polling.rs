@@ -3,6 +3,7 @@
 use crate::controller::channels::pins;
 use crate::controller::indicators::indicators;
 use crate::controller::speaker::Speaker;
+use crate::messages::McpCauseMessage;
 use brushwork_link::device::StatusReport;
 use brushwork_link::device::controller::{Line, PollItem, PollList};
 use brushwork_link::device::{Channel, PinSignal, Sample};
@@ -213,10 +214,8 @@ pub fn read(
 /// What an item reads. Nothing else can go out: there is no command to fall back to.
 fn polled(item: PollItem) -> Result<&'static dyn Polled, ExchangeError> {
     let all = FAST.into_iter().chain(SLOW).chain([ALL_STATUS, SPEEDS, SIGNALS]);
-    let what = || format!("nothing can be read under the number {} ({})", item.id, item.name);
-    all.into_iter()
-        .find(|poll| poll.item().id == item.id)
-        .ok_or_else(|| ExchangeError::Impossible { what: what() })
+    let what = || McpCauseMessage::NothingToRead { id: item.id, name: item.name };
+    all.into_iter().find(|poll| poll.item().id == item.id).ok_or_else(|| ExchangeError::impossible(what()))
 }
 
 /// Commands 18 and 19 carry the magnitude, and the direction in a byte: 1 is backwards (public clients, 2015-2025).

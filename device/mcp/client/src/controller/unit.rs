@@ -5,7 +5,7 @@ use crate::controller::driving::packets;
 use crate::controller::speaker::{Speaker, Wire};
 use crate::controller::traffic::{describe_received, describe_sent};
 use crate::controller::{arming, polling, stopping};
-use crate::messages::McpDriverMessage;
+use crate::messages::{McpCauseMessage, McpDriverMessage};
 use brushwork_link::Message;
 use brushwork_link::device::Described;
 use brushwork_link::device::Drive;
@@ -112,8 +112,7 @@ impl Controller for Mcp {
         let reply = self.speaker.ask(line, commands::READ_STATUS, &[])?;
         let word = u32::try_from(reply.values.int(STATUS)).unwrap_or(0);
         if status::decode(word, self.speaker.generation).contains(Condition::EStop) {
-            let what = "the E-stop is still set: it is pressed, or its reset is locked to the hardware";
-            return Err(ExchangeError::Impossible { what: what.to_owned() });
+            return Err(ExchangeError::impossible(McpCauseMessage::EStopIsSet));
         }
         Ok(())
     }
@@ -126,17 +125,15 @@ impl Controller for Mcp {
 
     fn stop_script(&mut self, line: &mut Line<'_>) -> Result<(), ExchangeError> {
         if let Some(model) = self.model.filter(|model| !model.runs_scripts()) {
-            return Err(ExchangeError::Impossible {
-                what: format!("a {} runs no scripts", model.family.name()),
-            });
+            let family = model.family.name();
+            return Err(ExchangeError::impossible(McpCauseMessage::NoScripts { family }));
         }
         self.speaker.ask(line, commands::STOP_SCRIPT, &[]).map(drop)
     }
 
     fn enter_loader(&mut self, line: &mut Line<'_>) -> Result<(), ExchangeError> {
         if matches!(self.speaker.wire, Wire::Objects(_)) {
-            let what = "the firmware loader cannot be entered over the CAN bus; connect over USB".to_owned();
-            return Err(ExchangeError::Impossible { what });
+            return Err(ExchangeError::impossible(McpCauseMessage::NoLoaderOverCan));
         }
         match self.speaker.ask(line, commands::ENTER_LOADER, &[]) {
             // The libraries do not insist on the acknowledgement: the unit restarts.

@@ -3,6 +3,8 @@
 use crate::diagnosis::evidence::{Evidence, Script};
 use crate::diagnosis::finding::Hindrance::{BlocksAll, BlocksSome, Limits};
 use crate::diagnosis::finding::{Finding, finding};
+use crate::messages::{CureMessage, FindingMessage};
+use brushwork_link::Message;
 use brushwork_link::settings::{SettingValue, SettingsImage, SettingsTable};
 use brushwork_link::transport::Stream;
 
@@ -47,27 +49,15 @@ fn priorities(settings: &SettingsImage) -> Option<Finding> {
     let levels: Vec<SettingValue> =
         (1..=3).filter_map(|level| settings.get(&format!("priority.{level}"))).collect();
     let has_serial = levels.contains(&SettingValue::Choice("serial"));
-    (levels.len() == 3 && !has_serial).then(|| {
-        finding(
-            BlocksAll,
-            "serial is in none of the three priority levels, so the inputs alone command the motors",
-            "Set a priority level to Serial in General Settings",
-        )
-    })
+    (levels.len() == 3 && !has_serial)
+        .then(|| finding(BlocksAll, FindingMessage::SerialNowhere, CureMessage::SetSerialLevel))
 }
 
 /// Without a time-out of the controller's own the motors would run on after this program, so nothing arms.
 fn time_out(settings: &SettingsImage, stream: Option<Stream>) -> Option<Finding> {
-    let cure = "Set it in General Settings, to 1 s for example";
-    let blocked = |which: &str| {
-        finding(
-            BlocksAll,
-            format!("{which} is 0, so the motors would run on without this program and are not armed"),
-            cure,
-        )
-    };
+    let blocked = |what: FindingMessage| finding(BlocksAll, what, CureMessage::SetTimeout);
     if settings.get("unit.serial_timeout") == Some(SettingValue::Number(0.0)) {
-        return Some(blocked("the serial time-out"));
+        return Some(blocked(FindingMessage::NoSerialTimeout));
     }
     let candidates = Stream::ALL.into_iter().filter(|candidate| match stream {
         Some(stream) => *candidate == stream,
@@ -79,7 +69,7 @@ fn time_out(settings: &SettingsImage, stream: Option<Stream>) -> Option<Finding>
     let zero = |stream: &Stream| {
         settings.get(&format!("stream.{}.timeout", stream.key())) == Some(SettingValue::Int(0))
     };
-    candidates.into_iter().find(zero).map(|stream| blocked(&format!("the time-out of {stream}")))
+    candidates.into_iter().find(zero).map(|stream| blocked(FindingMessage::NoTimeout { stream }))
 }
 
 fn script(settings: &SettingsImage, evidence: &Evidence<'_>) -> Option<Finding> {
@@ -88,35 +78,20 @@ fn script(settings: &SettingsImage, evidence: &Evidence<'_>) -> Option<Finding> 
         return started;
     }
     let delay_ms = settings.get("script.autorun_delay")?.int()?;
-    (delay_ms >= AUTORUN_FROM_MS).then(|| {
-        finding(
-            BlocksSome,
-            format!(
-                "a script that starts {delay_ms} ms after power-up may be at work and command the motors itself"
-            ),
-            "Press Stop All, which ends it, or set the script autorun delay to 0",
-        )
-    })
+    (delay_ms >= AUTORUN_FROM_MS)
+        .then(|| finding(BlocksSome, FindingMessage::AutorunScript { delay_ms }, CureMessage::EndAutorun))
 }
 
 fn started_script(evidence: &Evidence<'_>) -> Option<Finding> {
-    (evidence.script == Script::Started).then(|| {
-        finding(
-            BlocksSome,
-            "a script is at work and commands the motors itself",
-            "Press Stop All, which ends it",
-        )
-    })
+    (evidence.script == Script::Started)
+        .then(|| finding(BlocksSome, FindingMessage::Script, CureMessage::EndScript))
 }
 
 /// QPPS scales every speed (MCP manual 2.4.5).
 fn qpps(settings: &SettingsImage) -> Option<Finding> {
     let motors = motors_with(|motor| whole(settings, motor, "velocity.qpps") == Some(0));
-    Some(finding(
-        BlocksSome,
-        format!("the QPPS of {} is 0, and speed and position commands are scaled by it", named(&motors)?),
-        "Measure the speed at full duty and set QPPS to it",
-    ))
+    let motors = named(&motors)?;
+    Some(finding(BlocksSome, FindingMessage::NoQpps { motors }, CureMessage::MeasureQpps))
 }
 
 /// Equal limits leave no room to move (MCP manual 2.4.7).
@@ -125,14 +100,8 @@ fn position_limits(settings: &SettingsImage) -> Option<Finding> {
         |motor| Some((whole(settings, motor, "position.min")?, whole(settings, motor, "position.max")?));
     let motors = motors_with(|motor| limits(motor).is_some_and(|(min, max)| min >= max));
     let (min, max) = limits(*motors.first()?)?;
-    Some(finding(
-        BlocksSome,
-        format!(
-            "the position limits of {} ({min} to {max}) leave no room for position commands",
-            named(&motors)?
-        ),
-        "Set the lowest and the highest position",
-    ))
+    let motors = named(&motors)?;
+    Some(finding(BlocksSome, FindingMessage::NoTravel { motors, min, max }, CureMessage::SetTravel))
 }
 
 fn position_gains(settings: &SettingsImage) -> Option<Finding> {
@@ -141,22 +110,14 @@ fn position_gains(settings: &SettingsImage) -> Option<Finding> {
         matches!(settings.get(&key), Some(SettingValue::Number(value)) if value == 0.0)
     };
     let motors = motors_with(|motor| ["p", "i", "d"].iter().all(|gain| is_zero(motor, gain)));
-    Some(finding(
-        BlocksSome,
-        format!("the position gains P, I and D of {} are all 0", named(&motors)?),
-        "Tune the position loop, or set P",
-    ))
+    let motors = named(&motors)?;
+    Some(finding(BlocksSome, FindingMessage::NoGains { motors }, CureMessage::TunePosition))
 }
 
 /// One motor on both bridges (MCP manual 1.8).
 fn bridged(settings: &SettingsImage) -> Option<Finding> {
-    (settings.get("unit.bridge_channels") == Some(SettingValue::Bool(true))).then(|| {
-        finding(
-            Limits,
-            "both channels are bridged for one motor, so commands to motor 2 do nothing",
-            "Command motor 1, or switch bridging off before two motors are wired",
-        )
-    })
+    (settings.get("unit.bridge_channels") == Some(SettingValue::Bool(true)))
+        .then(|| finding(Limits, FindingMessage::Bridged, CureMessage::CommandMotor1))
 }
 
 fn motors_with(is_so: impl Fn(u8) -> bool) -> Vec<u8> {
@@ -164,12 +125,12 @@ fn motors_with(is_so: impl Fn(u8) -> bool) -> Vec<u8> {
 }
 
 /// "motor 2", "both motors"; none for none.
-fn named(motors: &[u8]) -> Option<String> {
-    match motors {
-        [] => None,
-        [one] => Some(format!("motor {one}")),
-        _ => Some("both motors".to_owned()),
-    }
+fn named(motors: &[u8]) -> Option<Message> {
+    Some(match motors {
+        [] => return None,
+        [one] => FindingMessage::OneMotor { motor: usize::from(*one) }.into(),
+        _ => FindingMessage::BothMotors.into(),
+    })
 }
 
 fn whole(settings: &SettingsImage, motor: u8, what: &str) -> Option<i64> {

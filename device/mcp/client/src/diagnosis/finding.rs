@@ -1,5 +1,7 @@
 //! One reason why motors do not run, with its cure.
 
+use crate::messages::CureMessage;
+use brushwork_link::Message;
 use serde::Serialize;
 
 /// How much a finding keeps the motors from.
@@ -20,11 +22,11 @@ pub struct Finding {
     /// How much it keeps the motors from.
     pub hindrance: Hindrance,
     /// What is so: a clause without a full stop.
-    pub what: String,
+    pub what: Message,
     /// What to do: a sentence without its full stop.
-    pub cure: String,
+    pub cure: Message,
 }
 
-pub(super) fn finding(hindrance: Hindrance, what: impl Into<String>, cure: impl Into<String>) -> Finding {
+pub(super) fn finding(hindrance: Hindrance, what: impl Into<Message>, cure: CureMessage) -> Finding {
     Finding { hindrance, what: what.into(), cure: cure.into() }
 }

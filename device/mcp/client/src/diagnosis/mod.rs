@@ -18,6 +18,8 @@ pub use finding::{Finding, Hindrance};
 pub use pin_end::{PinEnd, pin_ends};
 pub use pins::{has_actions, homed};
 
+use crate::messages::DiagnosisMessage;
+use brushwork_link::Message;
 use brushwork_link::device::StatusReport;
 use serde::Serialize;
 
@@ -31,22 +33,21 @@ pub struct Diagnosis {
 impl Diagnosis {
     /// The one sentence.
     #[must_use]
-    pub fn sentence(&self) -> String {
-        let Some(first) = self.findings.first() else {
-            return "Nothing that can be read keeps the motors from running: arm a screen and drive them."
-                .to_owned();
+    pub fn sentence(&self) -> Message {
+        let Some(Finding { hindrance, what, cure }) = self.findings.first().cloned() else {
+            return DiagnosisMessage::NothingFound.into();
         };
-        let effect = match first.hindrance {
-            Hindrance::BlocksAll => "The motors do not run",
-            Hindrance::BlocksSome => "Some commands do not move the motors",
-            Hindrance::Limits => "The motors run with limits",
+        let effect = match hindrance {
+            Hindrance::BlocksAll => DiagnosisMessage::NoneRun,
+            Hindrance::BlocksSome => DiagnosisMessage::SomeDoNotMove,
+            Hindrance::Limits => DiagnosisMessage::Limited,
         };
         let more = match self.findings.len() - 1 {
-            0 => String::new(),
-            1 => " (and 1 more reason)".to_owned(),
-            others => format!(" (and {others} more reasons)"),
+            0 => Message::default(),
+            1 => DiagnosisMessage::OneMore.into(),
+            others => DiagnosisMessage::SomeMore { others }.into(),
         };
-        format!("{effect}: {}{more}. {}.", first.what, first.cure)
+        DiagnosisMessage::Because { effect: effect.into(), what, more, cure }.into()
     }
 }
 

@@ -5,6 +5,8 @@ use crate::diagnosis::evidence::Evidence;
 use crate::diagnosis::finding::Hindrance::{BlocksAll, BlocksSome};
 use crate::diagnosis::finding::{Finding, finding};
 use crate::diagnosis::pin_end::PinEnd;
+use crate::messages::{CureMessage, FindingMessage};
+use brushwork_link::Message;
 use brushwork_link::settings::{SettingValue, SettingsImage};
 
 /// Whether any input pin that is in use has an action, so that it can stop a motor.
@@ -51,24 +53,29 @@ pub fn findings(evidence: &Evidence<'_>) -> Vec<Finding> {
 }
 
 fn of_action(action: &Action, evidence: &Evidence<'_>) -> Option<Finding> {
-    let end = if action.end == PinEnd::Lowest { "minimum" } else { "maximum" };
-    let at = format!("{} is at its {end}", evidence.pin_name(action.pin));
+    let end: Message = match action.end {
+        PinEnd::Lowest => FindingMessage::Minimum.into(),
+        PinEnd::Between | PinEnd::Highest => FindingMessage::Maximum.into(),
+    };
+    let pin = evidence.pin_name(action.pin);
     let motors = match action.motors {
-        [one] => format!("motor {one}"),
-        _ => "both motors".to_owned(),
+        [one] => FindingMessage::OneMotor { motor: *one }.into(),
+        _ => FindingMessage::BothMotors.into(),
     };
     let hindrance = if action.motors.len() > 1 { BlocksAll } else { BlocksSome };
-    let cure = format!("Take the input away from its {end}, or change its {end} action");
+    let cure = CureMessage::LeaveEnd { end: end.clone() };
     Some(match action.effect {
-        "safe_stop" => finding(hindrance, format!("{at}, whose action stops {motors}"), cure),
-        "off" => finding(hindrance, format!("{at}, whose action lets {motors} coast"), cure),
+        "safe_stop" => finding(hindrance, FindingMessage::PinStops { pin, end, motors }, cure),
+        "off" => finding(hindrance, FindingMessage::PinLetsCoast { pin, end, motors }, cure),
         "forward_limit" => {
-            finding(BlocksSome, format!("{at}, a forward limit of {motors}"), "Drive backwards")
+            let what = FindingMessage::ForwardLimit { pin, end, motors };
+            finding(BlocksSome, what, CureMessage::DriveBackwards)
         }
         "backward_limit" => {
-            finding(BlocksSome, format!("{at}, a backward limit of {motors}"), "Drive forwards")
+            let what = FindingMessage::BackwardLimit { pin, end, motors };
+            finding(BlocksSome, what, CureMessage::DriveForwards)
         }
-        "e_stop" => finding(BlocksAll, format!("{at}, whose action is an emergency stop"), cure),
+        "e_stop" => finding(BlocksAll, FindingMessage::PinEStops { pin, end }, cure),
         _ => return None,
     })
 }
@@ -126,27 +133,17 @@ fn held_by(
         (0..).take_while(|pin| choice(settings, *pin, "type").is_some()).filter(drives).collect();
     let first = pins.first()?;
     let names = pins.iter().map(|pin| evidence.pin_name(*pin)).collect::<Vec<_>>().join(", ");
-    let cure = format!(
-        "Put Serial on a level above {kind}, or take the motor away from {}",
-        evidence.pin_name(*first)
-    );
-    let levels = format!("priority level {level}, Serial level {serial}");
+    let cure = CureMessage::RaiseSerial { kind: kind.to_owned(), pin: evidence.pin_name(*first) };
     Some(match kind {
-        "analog" => {
-            finding(BlocksAll, format!("the analog input {names} commands them alone ({levels})"), cure)
-        }
+        "analog" => finding(BlocksAll, FindingMessage::AnalogCommands { names, level, serial }, cure),
         "pulse" => {
             let for_ever = pins.iter().any(|pin| int(settings, *pin, "timeout") == Some(0));
-            let how_long = if for_ever {
-                "once pulses have come, with a time-out of 0, for good"
+            let what = if for_ever {
+                FindingMessage::PulsesForGood { names, level, serial }
             } else {
-                "for as long as pulses come"
+                FindingMessage::PulsesMeanwhile { names, level, serial }
             };
-            finding(
-                BlocksSome,
-                format!("the pulse input {names} commands them alone {how_long} ({levels})"),
-                cure,
-            )
+            finding(BlocksSome, what, cure)
         }
         _ => return None,
     })

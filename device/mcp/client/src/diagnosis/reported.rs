@@ -3,14 +3,15 @@
 use crate::diagnosis::evidence::Evidence;
 use crate::diagnosis::finding::Hindrance::{BlocksAll, BlocksSome, Limits};
 use crate::diagnosis::finding::{Finding, finding};
+use crate::messages::{CureMessage, FindingMessage};
 use brushwork_link::device::Indicator;
 use brushwork_link::settings::SettingValue;
 use brushwork_values::Severity;
 
 /// What an indicator means for the motors; none for one that says nothing about them.
 pub fn of(indicator: &Indicator, evidence: &Evidence<'_>) -> Option<Finding> {
-    let reported = |hindrance, cure: &str| {
-        Some(finding(hindrance, format!("the controller reports: {}", indicator.title), cure))
+    let reported = |hindrance, cure: CureMessage| {
+        Some(finding(hindrance, FindingMessage::Reported { title: indicator.title }, cure))
     };
     match indicator.key {
         "e_stop" => Some(emergency_stop(evidence)),
@@ -24,33 +25,23 @@ pub fn of(indicator: &Indicator, evidence: &Evidence<'_>) -> Option<Finding> {
         | "main_battery_low_warning"
         | "logic_battery_high_error"
         | "logic_battery_low_error" => Some(battery(indicator, evidence)),
-        "m1_driver_fault" | "m2_driver_fault" => reported(
-            BlocksAll,
-            "Check the motor and its leads for a short circuit, then restart the controller; if it stays, the bridge is \
-             damaged",
-        ),
-        "m1_speed_error" | "m2_speed_error" | "m1_position_error" | "m2_position_error" => reported(
-            BlocksSome,
-            "Check encoder, wiring and the error limits; the motor's next command clears the fault",
-        ),
-        "m1_current_error" | "m2_current_error" => {
-            reported(BlocksAll, "Look for a blocked shaft or a short circuit, then restart the controller")
+        "m1_driver_fault" | "m2_driver_fault" => reported(BlocksAll, CureMessage::CheckBridge),
+        "m1_speed_error" | "m2_speed_error" | "m1_position_error" | "m2_position_error" => {
+            reported(BlocksSome, CureMessage::CheckErrorLimits)
         }
+        "m1_current_error" | "m2_current_error" => reported(BlocksAll, CureMessage::LookForBlock),
         "m1_over_current_warning" => Some(current_limit(1, evidence)),
         "m2_over_current_warning" => Some(current_limit(2, evidence)),
         "speed_limit_warning" | "m1_speed_warning" | "m2_speed_warning" => {
-            reported(Limits, "Look for a load that is too heavy, or raise the speed error limit")
+            reported(Limits, CureMessage::RaiseSpeedLimit)
         }
         "position_limit_warning" | "m1_position_warning" | "m2_position_warning" => {
-            reported(Limits, "Look for a load that is too heavy, or raise the position error limit")
+            reported(Limits, CureMessage::RaisePositionLimit)
         }
-        "can_warning" => reported(Limits, "Check the CAN bus: its wiring, terminators and rate"),
-        "boot_warning" => reported(
-            Limits,
-            "Read the settings and compare them with a backup: something was wrong at start-up",
-        ),
+        "can_warning" => reported(Limits, CureMessage::CheckCanBus),
+        "boot_warning" => reported(Limits, CureMessage::CompareSettings),
         "m1_over_regeneration_warning" | "m2_over_regeneration_warning" => {
-            reported(Limits, "Decelerate more gently, or raise the minimum current")
+            reported(Limits, CureMessage::BrakeGently)
         }
         // Where the pins tell the same in full, the pin is named instead.
         "m1_home" | "m2_home" | "s4_signal" | "s5_signal" if evidence.pins.is_some() => None,
@@ -64,29 +55,26 @@ pub fn of(indicator: &Indicator, evidence: &Evidence<'_>) -> Option<Finding> {
 fn emergency_stop(evidence: &Evidence<'_>) -> Finding {
     let reset = evidence.settings.and_then(|settings| settings.get("unit.estop_reset"));
     let cure = match reset {
-        Some(SettingValue::Choice("hardware")) => {
-            "Release it, then restart the controller: its reset is set to hardware"
-        }
-        Some(SettingValue::Choice("software")) => "Release it, then reset it on the Device Status screen",
-        Some(SettingValue::Choice("automatic")) => "Release it: the reset is automatic",
-        _ => "Release it, then reset it or restart the controller",
+        Some(SettingValue::Choice("hardware")) => CureMessage::RestartAfterEStop,
+        Some(SettingValue::Choice("software")) => CureMessage::ResetAfterEStop,
+        Some(SettingValue::Choice("automatic")) => CureMessage::ReleaseEStop,
+        _ => CureMessage::ResetOrRestart,
     };
-    finding(BlocksAll, "the emergency stop is active (E-Stop)", cure)
+    finding(BlocksAll, FindingMessage::EmergencyStop, cure)
 }
 
 fn temperature(indicator: &Indicator, evidence: &Evidence<'_>) -> Finding {
     let second = matches!(indicator.key, "temperature2_error" | "temperature2_warning");
+    let title = indicator.title;
     let at = match evidence.measured.celsius[usize::from(second)] {
-        Some(celsius) => format!("the board is at {celsius:.1} °C ({})", indicator.title),
-        None => format!("the controller reports: {}", indicator.title),
+        Some(celsius) => FindingMessage::BoardIsAt { celsius, title },
+        None => FindingMessage::Reported { title },
     };
     match indicator.severity {
-        Severity::Error => finding(BlocksAll, at, "Let the board cool below 100 °C"),
-        Severity::Signal | Severity::Warning => finding(
-            Limits,
-            format!("{at}, so its current limit is reduced"),
-            "Let the board cool below 85 °C",
-        ),
+        Severity::Error => finding(BlocksAll, at, CureMessage::CoolBelow100),
+        Severity::Signal | Severity::Warning => {
+            finding(Limits, FindingMessage::LessCurrent { what: at.into() }, CureMessage::CoolBelow85)
+        }
     }
 }
 
@@ -103,39 +91,33 @@ fn battery(indicator: &Indicator, evidence: &Evidence<'_>) -> Finding {
     };
     let end = if is_high { "max_volts" } else { "min_volts" };
     let limit = evidence.settings.and_then(|settings| settings.get(&format!("limits.{key}.{end}"))?.number());
-    let which = if is_high { "above its maximum" } else { "below its minimum" };
+    let title = indicator.title;
     let exceeded = |volts: f64, limit: f64| if is_high { volts > limit } else { volts < limit };
     let what = match (volts, limit) {
-        (Some(volts), Some(limit)) if exceeded(volts, limit) => {
-            format!("the {name} battery is at {volts:.1} V, {which} of {limit:.1} V ({})", indicator.title)
-        }
-        (Some(volts), _) => format!("the controller reports: {} (now {volts:.1} V)", indicator.title),
-        (None, _) => format!("the controller reports: {}", indicator.title),
+        (Some(volts), Some(limit)) if exceeded(volts, limit) => match is_high {
+            true => FindingMessage::BatteryAbove { name, volts, limit, title },
+            false => FindingMessage::BatteryBelow { name, volts, limit, title },
+        },
+        (Some(volts), _) => FindingMessage::ReportedVolts { title, volts },
+        (None, _) => FindingMessage::Reported { title },
     };
     let cure = match (is_high, is_logic, indicator.severity) {
-        (_, _, Severity::Error) => {
-            format!("Bring the {name} battery between its limits and restart the controller")
-        }
-        (true, ..) => "Lower the main battery voltage or raise its maximum".to_owned(),
-        (false, ..) => "Charge the main battery or lower its minimum".to_owned(),
+        (_, _, Severity::Error) => CureMessage::BringBetween { name },
+        (true, ..) => CureMessage::LowerVoltage,
+        (false, ..) => CureMessage::Charge,
     };
     finding(BlocksAll, what, cure)
 }
 
 fn current_limit(motor: u8, evidence: &Evidence<'_>) -> Finding {
     let amps = evidence.measured.amps[usize::from(motor - 1)];
-    let measured = amps.map_or(String::new(), |amps| format!(" ({amps:.1} A now)"));
-    finding(
-        Limits,
-        format!("motor {motor} is at its current limit{measured}"),
-        "Free the shaft or take load off, or raise the motor's current limit",
-    )
+    let what = match amps {
+        Some(amps) => FindingMessage::CurrentLimitNow { motor, amps },
+        None => FindingMessage::CurrentLimit { motor },
+    };
+    finding(Limits, what, CureMessage::FreeShaft)
 }
 
 fn at_switch(motor: u8) -> Finding {
-    finding(
-        BlocksSome,
-        format!("motor {motor} is at its home or limit switch"),
-        "Drive away from the switch, or open it",
-    )
+    finding(BlocksSome, FindingMessage::AtSwitch { motor }, CureMessage::LeaveSwitch)
 }

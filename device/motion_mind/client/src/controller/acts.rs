@@ -4,6 +4,7 @@ use crate::controller::MotionMindFacts;
 use crate::controller::traffic::{describe_received, describe_sent};
 use crate::controller::unit::MotionMind;
 use crate::controller::{arming, driving, polling, raw, stopping};
+use crate::messages::MotionMindCauseMessage;
 use brushwork_link::device::Described;
 use brushwork_link::device::Drive;
 use brushwork_link::device::Identity;
@@ -63,8 +64,7 @@ impl Controller for MotionMind {
 
     fn set_encoder(&mut self, line: &mut Line<'_>, motor: Motor, counts: i32) -> Result<(), ExchangeError> {
         if motor == Motor::M2 {
-            let what = "a Motion Mind has one motor".to_owned();
-            return Err(ExchangeError::Impossible { what });
+            return impossible(MotionMindCauseMessage::SecondMotor);
         }
         let command = Command::Write { register: number::POSITION, value: counts.into() };
         self.speaker.ask(line, &command).map(drop)
@@ -75,15 +75,15 @@ impl Controller for MotionMind {
     }
 
     fn reset_estop(&mut self, _: &mut Line<'_>) -> Result<(), ExchangeError> {
-        no_such("no emergency stop that software could reset; its brake input ends by itself")
+        impossible(MotionMindCauseMessage::NoEStop)
     }
 
     fn start_script(&mut self, _: &mut Line<'_>) -> Result<(), ExchangeError> {
-        no_such("no scripts")
+        impossible(MotionMindCauseMessage::NoScripts)
     }
 
     fn stop_script(&mut self, _: &mut Line<'_>) -> Result<(), ExchangeError> {
-        no_such("no scripts")
+        impossible(MotionMindCauseMessage::NoScripts)
     }
 
     fn transact(
@@ -94,9 +94,7 @@ impl Controller for MotionMind {
     ) -> Result<Answer, ExchangeError> {
         let raw: Vec<i64> = values.iter().filter_map(Value::as_int).collect();
         let Some(command) = Command::from_parts(command, &raw) else {
-            let what =
-                format!("a Motion Mind has no command {command:#04X} with {} values that fit", raw.len());
-            return Err(ExchangeError::Impossible { what });
+            return impossible(MotionMindCauseMessage::NoCommand { command, count: raw.len() });
         };
         let (reply, span) = self.speaker.ask(line, &command)?;
         self.note(&command);
@@ -148,8 +146,8 @@ impl Controller for MotionMind {
     }
 }
 
-fn no_such<T>(what: &str) -> Result<T, ExchangeError> {
-    Err(ExchangeError::Impossible { what: format!("a Motion Mind has {what}") })
+fn impossible<T>(what: MotionMindCauseMessage) -> Result<T, ExchangeError> {
+    Err(ExchangeError::impossible(what))
 }
 
 fn effect(command: u8) -> Option<Effect> {

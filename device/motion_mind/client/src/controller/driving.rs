@@ -1,5 +1,6 @@
 //! What a drive is in commands of a Motion Mind: one for each mode that serial commands can move a motor in.
 
+use crate::messages::MotionMindCauseMessage;
 use brushwork_link::Message;
 use brushwork_link::device::{Drive, DriveCommand};
 use brushwork_link::exchange::ExchangeError;
@@ -13,14 +14,16 @@ pub const COUNTS_PER_S_PER_STEP: f64 = 200.0;
 /// The command for a drive in a mode. Ramps and speeds of moves are settings of the controller (VELOCITYLIMIT, TIMER), so those
 /// of the drive are not looked at.
 pub fn command(mode: Mode, drive: &Drive) -> Result<Command, ExchangeError> {
-    let (Some(wanted), None) = (drive.m1, drive.m2) else { return impossible("it has one motor, motor 1") };
+    let (Some(wanted), None) = (drive.m1, drive.m2) else {
+        return impossible(MotionMindCauseMessage::OneMotor);
+    };
     match (wanted, mode) {
         (DriveCommand::Duty { duty, .. }, Mode::Serial) => {
             let steps = (duty * FULL_DUTY).round();
             if steps.abs() <= FULL_DUTY {
                 Ok(Command::ChangeSpeed(steps as i16))
             } else {
-                impossible("a duty is from -100 % to 100 %")
+                impossible(MotionMindCauseMessage::DutyOutside)
             }
         }
         (DriveCommand::Speed { speed_counts_per_s, .. }, Mode::SerialPid) => {
@@ -28,7 +31,7 @@ pub fn command(mode: Mode, drive: &Drive) -> Result<Command, ExchangeError> {
             if steps.abs() <= f64::from(i16::MAX) {
                 Ok(Command::MoveAtVelocity(steps as i16))
             } else {
-                impossible("the speed is more than 32,767 counts per PID loop")
+                impossible(MotionMindCauseMessage::SpeedOutside)
             }
         }
         (DriveCommand::Position { position_counts, .. }, Mode::SerialPid | Mode::AnalogPid) => {
@@ -40,9 +43,9 @@ pub fn command(mode: Mode, drive: &Drive) -> Result<Command, ExchangeError> {
         ) => match i32::try_from(distance_counts) {
             Ok(distance) if speed_counts_per_s < 0 => Ok(Command::MoveToRelative(-distance)),
             Ok(distance) => Ok(Command::MoveToRelative(distance)),
-            Err(_) => impossible("the distance is more than 2,147,483,647 counts"),
+            Err(_) => impossible(MotionMindCauseMessage::DistanceOutside),
         },
-        (_, mode) => impossible(&format!("in {mode} it takes {}", taken(mode))),
+        (_, mode) => impossible(MotionMindCauseMessage::Takes { mode, taken: taken(mode) }),
     }
 }
 
@@ -76,6 +79,6 @@ pub fn preview(drive: &Drive, address: u8, mode: Mode, protocol: Protocol) -> Ve
     command(mode, drive).ok().and_then(encode).into_iter().collect()
 }
 
-fn impossible<T>(what: &str) -> Result<T, ExchangeError> {
-    Err(ExchangeError::Impossible { what: what.to_owned() })
+fn impossible<T>(what: MotionMindCauseMessage) -> Result<T, ExchangeError> {
+    Err(ExchangeError::impossible(what))
 }

@@ -5,6 +5,7 @@
 
 use crate::controller::registers::all_returns;
 use crate::controller::speaker::{GAP, Speaker};
+use crate::messages::MotionMindCauseMessage;
 use brushwork_link::device::controller::Line;
 use brushwork_link::exchange::{ExchangeError, Judgement, Outgoing};
 use brushwork_motion_mind_wire::{
@@ -40,24 +41,22 @@ fn look_at_frame(bytes: &[u8]) -> Result<Typed, ExchangeError> {
     found.extend(reader.silent_until(Duration::from_secs(1)));
     match found.as_slice() {
         [FrameEvent::Command(address, command)] => Ok(Typed::Command(*address, *command)),
-        [FrameEvent::Command(..), ..] => impossible("one command goes out at a time"),
+        [FrameEvent::Command(..), ..] => impossible(MotionMindCauseMessage::OneCommand),
         _ => Ok(Typed::Unknown),
     }
 }
 
 fn look_at_line(bytes: &[u8]) -> Result<Typed, ExchangeError> {
     if bytes.iter().any(|byte| byte.eq_ignore_ascii_case(&b'Z')) {
-        return impossible(
-            "Z is never sent: the self-test leaves the unit dead until its power is switched off and on",
-        );
+        return impossible(MotionMindCauseMessage::NeverZ);
     }
     if !bytes.ends_with(b"\r\n") || bytes.iter().filter(|byte| **byte == b'\n').count() > 1 {
-        return impossible("one whole line goes out at a time, with its line end");
+        return impossible(MotionMindCauseMessage::OneLine);
     }
     let mut reader = LineReader::new();
     match bytes.iter().find_map(|byte| reader.feed(*byte)) {
         Some(LineEvent::Command(address, command)) => Ok(Typed::Command(address, command)),
-        Some(LineEvent::SelfTest(_)) => impossible("the self-test is never sent"),
+        Some(LineEvent::SelfTest(_)) => impossible(MotionMindCauseMessage::NeverSelfTest),
         Some(LineEvent::NotUnderstood { .. }) | None => Ok(Typed::BadLine),
     }
 }
@@ -138,6 +137,6 @@ fn judge(protocol: Protocol, typed: &Typed, bytes: &[u8]) -> Judgement {
     }
 }
 
-fn impossible<T>(what: &str) -> Result<T, ExchangeError> {
-    Err(ExchangeError::Impossible { what: what.to_owned() })
+fn impossible<T>(what: MotionMindCauseMessage) -> Result<T, ExchangeError> {
+    Err(ExchangeError::impossible(what))
 }

@@ -1,6 +1,8 @@
 //! One command to one unit and its reply, in the unit's protocol, with the pause that both ends need.
 
 use crate::controller::registers::{all_returns, returns_of, value_in};
+use crate::messages::MotionMindCauseMessage;
+use brushwork_link::Message;
 use brushwork_link::device::controller::Line;
 use brushwork_link::exchange::{ExchangeError, Fault, Judgement, Outgoing, Span};
 use brushwork_motion_mind_wire::{
@@ -144,8 +146,8 @@ impl Speaker {
         if let Command::ReadRegister(index) | Command::ReadText(Part::Register(index)) = command
             && register(*index).is_none()
         {
-            let what = format!("register {index} is not known, nor is how long its reply would be");
-            return Err(ExchangeError::Impossible { what });
+            let what = MotionMindCauseMessage::UnknownRegister { register: *index };
+            return Err(ExchangeError::impossible(what));
         }
         if matches!(command.effect(), Effect::Motion | Effect::RelativeMotion) {
             if !line.permit().motion {
@@ -236,5 +238,5 @@ fn width(index: u8) -> usize {
 }
 
 fn cannot(source: &EncodeError) -> ExchangeError {
-    ExchangeError::Impossible { what: source.to_string() }
+    ExchangeError::impossible(Message::error(source.clone()))
 }

@@ -263,9 +263,8 @@ fn rest(line: &mut Line<'_>) -> Result<(), ExchangeError> {
 
 pub fn read(unit: &mut MotionMind, line: &mut Line<'_>, register: u8) -> Result<i64, ExchangeError> {
     let (reply, _) = unit.speaker.ask(line, &Command::ReadRegister(register))?;
-    value_in(&reply, register).ok_or_else(|| ExchangeError::Impossible {
-        what: format!("the reply does not hold register {register}"),
-    })
+    value_in(&reply, register)
+        .ok_or_else(|| ExchangeError::impossible(MotionMindCauseMessage::RegisterMissing { register }))
 }
 
 /// Reads VELOCITYLIMIT and TIMER.
