@@ -1,8 +1,10 @@
-//! What a run asks of a law whose figures can be read off the machine.
+//! What a run asks of a law whose figures can be read off the machine, and a run that does nothing else.
 
 use crate::cause::Cause;
-use crate::experiment_guard::ExperimentGuard;
+use crate::experiment::{Probe, run_probe};
+use crate::experiment_guard::{ExperimentGuard, GuardOptions};
 use crate::law::Law;
+use crate::setup::LoopAxis;
 
 /// A law that a run can find out, where [`Facts::can_be_probed`](crate::law::Facts) says so.
 pub trait LawProbe: Law {
@@ -16,5 +18,112 @@ pub trait LawProbe: Law {
         _is_position: bool,
     ) -> Result<Option<Self::Findings>, Cause> {
         Ok(None)
+    }
+}
+
+/// Duty above the starting one at which the unfiltered speed is read.
+const READING_DUTY: f64 = 0.02;
+/// How long and how far the motor turns each way for that, and how many readings are enough.
+const READING_S: f64 = 0.5;
+const READING_COUNTS: f64 = 300.0;
+const ENOUGH_READINGS: usize = 40;
+/// Readings that are multiples of a step, at the least, and how far they may be from it, counts/s: they are rounded.
+const LEAST_READINGS: usize = 6;
+const ROUNDING: f64 = 1.01;
+/// The smallest reading may be so many steps.
+const MOST_STEPS: i32 = 8;
+
+/// What [`find_law`] found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LawFound<L: Law> {
+    /// The wiring probe.
+    pub probe: Probe,
+    /// What the law probe found; `None` where the controller reports no duty, or its law is not found out so.
+    pub findings: Option<L::Findings>,
+    /// The step of the unfiltered speed, counts/s: one count in the time that it is counted over. `None` where the readings have none.
+    pub speed_step: Option<f64>,
+}
+
+/// Finds out the law of an axis and the step of its unfiltered speed, with as little motion as that takes: the wiring probe, half a second
+/// of creeping forward and as much back. The motor stands and the old gains are in force when it returns.
+///
+/// # Errors
+/// Why nothing is known.
+pub fn find_law<L: LawProbe>(
+    axis: &mut dyn LoopAxis<L>,
+    options: GuardOptions,
+) -> Result<LawFound<L>, Cause> {
+    let mut guard = ExperimentGuard::new(axis, options)?;
+    let found = look(&mut guard).map_err(|cause| guard.concluded(cause));
+    guard.finish(false);
+    found
+}
+
+fn look<L: LawProbe>(guard: &mut ExperimentGuard<'_, L>) -> Result<LawFound<L>, Cause> {
+    guard.progress("Checking the wiring with a little duty");
+    let probe = run_probe(guard, 1.0)?;
+    guard.progress("Reading the unfiltered speed while the motor creeps");
+    let mut speeds = Vec::new();
+    for direction in [1.0, -1.0] {
+        creep(guard, direction * (probe.start_duty + READING_DUTY), &mut speeds)?;
+        guard.come_to_rest()?;
+    }
+    guard.progress("Finding out the law of the loop");
+    let held = guard.setup.held;
+    let findings = match guard.facts.can_be_probed {
+        true => L::probe(guard, &held, &|write| write, probe.start_duty, true)?,
+        false => None,
+    };
+    Ok(LawFound { probe, findings, speed_step: step_of(&speeds) })
+}
+
+/// Reads the unfiltered speed until there are enough readings that are not 0, or the motor has gone far enough.
+fn creep<L: Law>(guard: &mut ExperimentGuard<'_, L>, duty: f64, speeds: &mut Vec<i32>) -> Result<(), Cause> {
+    guard.poll(false)?;
+    let from = guard.points.last().map_or(0.0, |point| point.counts);
+    let (until_s, enough) = (guard.now_s() + READING_S, speeds.len() + ENOUGH_READINGS);
+    guard.duty(duty)?;
+    while guard.now_s() < until_s && speeds.len() < enough {
+        let point = guard.poll(false)?;
+        if point.is_some_and(|point| (point.counts - from).abs() > READING_COUNTS) {
+            break;
+        }
+        speeds.extend(Some(guard.raw_speed()?).filter(|speed| *speed != 0));
+    }
+    guard.duty(0.0)
+}
+
+/// The largest step of which all readings are multiples.
+fn step_of(speeds: &[i32]) -> Option<f64> {
+    let smallest = speeds.iter().map(|speed| speed.abs()).min().filter(|_| speeds.len() >= LEAST_READINGS)?;
+    (1..=MOST_STEPS).map(|parts| f64::from(smallest) / f64::from(parts)).find_map(|guess| {
+        // The larger readings tell it more finely.
+        let mut step = guess;
+        let mut sorted: Vec<f64> = speeds.iter().map(|speed| f64::from(speed.abs())).collect();
+        sorted.sort_by(f64::total_cmp);
+        for speed in &sorted {
+            let steps = (speed / step).round();
+            if (speed - steps * step).abs() > ROUNDING + 0.02 * step {
+                return None;
+            }
+            step = speed / steps;
+        }
+        Some(step)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_step_of_rounded_multiples_is_found() {
+        assert_eq!(step_of(&[300, -600, 300, 900, -300, 1200]), Some(300.0));
+        assert_eq!(step_of(&[625, 625, 1250, -625, 1875, 625]), Some(625.0));
+        assert_eq!(step_of(&[600, 900, 1500, 600, 2100, 900]), Some(300.0));
+        let halves = step_of(&[312, 313, 625, 938, -312, 1250]).unwrap();
+        assert!((halves - 312.5).abs() < 0.1, "{halves}");
+        assert_eq!(step_of(&[300, 300, 600]), None, "too few");
+        assert_eq!(step_of(&[997, 1013, 1204, 1331, 871, 1483]), None);
     }
 }

@@ -147,6 +147,20 @@ impl CapabilityBook {
         self.units.contains_key(&address)
     }
 
+    /// What is known of the unit at an address.
+    #[must_use]
+    pub fn of(&self, address: u8) -> CapabilityMap {
+        self.units.get(&address).map(|unit| unit.map.clone()).unwrap_or_default()
+    }
+
+    /// Forgets what was learned of the firmware at an address, here and where it is kept, so that all of it is learned anew.
+    pub fn forget(&mut self, address: u8) {
+        if let Some(unit) = self.units.get_mut(&address) {
+            unit.map = CapabilityMap::default();
+            unit.has_news = true;
+        }
+    }
+
     /// Whether a unit is known to lack a command, so that asking is in vain.
     #[must_use]
     pub fn lacks(&self, address: u8, command: u8) -> bool {
@@ -280,6 +294,22 @@ mod tests {
         book.answered(UNIT, 5, Duration::from_millis(600), 0);
         let slow = book.units[&UNIT].map.entries().filter(|(_, presence, _)| *presence == Presence::Slow);
         assert_eq!(slow.map(|(command, ..)| command).collect::<Vec<_>>(), [5]);
+    }
+
+    #[test]
+    fn what_was_forgotten_is_forgotten_where_it_is_kept_too_and_learned_again() {
+        let shelf = Arc::new(Shelf::default());
+        let mut book = CapabilityBook::new(Some(Arc::clone(&shelf) as _));
+        book.introduce(UNIT, "v1");
+        (0..20).for_each(|command| book.answered(UNIT, command, MILLISECOND, 0));
+        assert!(book.silent(UNIT, 90, 3));
+        book.take_news();
+        book.forget(UNIT);
+        assert!(!book.lacks(UNIT, 90) && book.of(UNIT).is_empty());
+        assert_eq!(book.take_news(), [(UNIT, CapabilityMap::default())]);
+        assert!(shelf.load("v1").is_empty());
+        book.answered(UNIT, 90, MILLISECOND, 0);
+        assert_eq!(book.of(UNIT).entries().map(|(command, ..)| command).collect::<Vec<_>>(), [90]);
     }
 
     #[derive(Debug, Default)]

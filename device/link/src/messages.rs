@@ -162,6 +162,7 @@ pub fn settings(count: usize) -> Message {
 messages! {
     /// What is tried, as a bare verb phrase, in failures and as the name of a job.
     pub enum ActMessage {
+        LearnAnew "learn anew what its firmware answers",
         FindController "find a controller",
         ListPorts "list the serial ports",
         Read { phrase: String } "{phrase}",
@@ -197,6 +198,9 @@ messages! {
         PowerUntold "this controller does not tell a job what a motor draws",
         SpeedUntold "this controller does not tell a job its speed",
         BatteryUntold "this controller does not tell a job its battery",
+        MotorsArmed "the motors are armed",
+        NotExamined "this family of controllers is not examined",
+        ArmedMeanwhile "the motors are armed; a firmware is examined while they are not",
         NoFamily "this program has no family of controllers",
         ListUnreadable "the system's list cannot be read",
         NoSuchUnit "no unit answered there when the link was opened",
@@ -223,6 +227,7 @@ messages! {
 messages! {
     /// What to do, as a sentence without its full stop.
     pub enum RemedyMessage {
+        DisarmFirst "Disarm first, then try again",
         CheckWiring "Check the controller's power, the wiring, the baud rate and the address",
         CheckLine "Check the baud rate, the wiring and ground, and that no two units share an address",
         LookAtMotor "Look where the motor stands before you send it again",

@@ -7,6 +7,7 @@ pub use super::described::Described;
 use super::channel::Sample;
 use super::drive::Drive;
 use super::identity::Identity;
+use super::inquiry::{Heard, Inquiry};
 use super::options::{Addresses, DeviceOptions};
 use super::signals::Guard;
 use super::status::StatusReport;
@@ -119,6 +120,16 @@ pub trait Controller: Send {
     /// Sends bytes as a person typed them, one command at a time, and gives what came back, whatever it was.
     fn raw(&mut self, _line: &mut Line<'_>, _bytes: &[u8]) -> Result<Vec<u8>, ExchangeError> {
         Err(ExchangeError::impossible(CauseMessage::BytesNotTaken))
+    }
+
+    /// Asks the firmware something in bytes, for an examination. Refused where the bytes could do more than was agreed to.
+    fn inquire(&mut self, _line: &mut Line<'_>, _inquiry: &Inquiry<'_>) -> Result<Heard, ExchangeError> {
+        Err(ExchangeError::impossible(CauseMessage::NotExamined))
+    }
+
+    /// Finds out anew what can be read from it, after what was known of its firmware was forgotten.
+    fn look_again(&mut self, _line: &mut Line<'_>) -> Result<(), ExchangeError> {
+        Ok(())
     }
 
     /// Whether typed bytes can undo what [`Controller::check_arming`] found.

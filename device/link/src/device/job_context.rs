@@ -3,7 +3,9 @@
 use super::channel::Sample;
 use super::drive::Drive;
 use super::identity::Facts;
-use crate::exchange::{ExchangeError, Interruption, Reply};
+use super::inquiry::{Heard, Inquiry};
+use crate::capability::CapabilityMap;
+use crate::exchange::{ExchangeError, Interruption, Lateness, Reply};
 use crate::wire::Wire;
 use std::time::Duration;
 
@@ -26,6 +28,15 @@ pub trait JobHost: Wire {
     /// is made by [`Job::moving`](super::Job::moving). After an error nobody knows what the motors do, so the job
     /// should end.
     fn drive(&mut self, drive: &Drive) -> Result<(), ExchangeError>;
+
+    /// Asks the firmware something in bytes, for an examination. Refused while anything is armed.
+    fn inquire(&mut self, inquiry: &Inquiry<'_>) -> Result<Heard, ExchangeError>;
+
+    /// What the unit's firmware is known to answer.
+    fn answers(&mut self) -> CapabilityMap;
+
+    /// How late the line has shown itself; `None` before the first reply.
+    fn lateness(&self) -> Option<Lateness>;
 
     /// What the unit's family knows of it.
     fn facts(&self) -> Facts;

@@ -18,6 +18,9 @@ pub enum Request {
     ReadSignals(bool),
     /// Says which of the controller's streams this port is wired to, where the device name does not tell.
     SetStream(Stream),
+    /// Forgets what was learned of the unit's firmware, here and where it is kept, and finds it out anew. Not while anything is armed.
+    /// Answered by [`Event::Capabilities`](super::Event::Capabilities).
+    LearnAnew,
     /// Switches [`Event::Traffic`](super::Event::Traffic) on or off.
     Trace(bool),
     /// Asks for permission to move motors. Answered by [`Event::Armed`](super::Event::Armed) or

@@ -5,7 +5,7 @@ use super::given_up::GivenUp;
 use super::request::{Judgement, Outgoing, Span};
 use super::statistics::{Counters, LinkStatistics};
 use super::trace::{Trace, Traffic};
-use super::turnaround::Turnaround;
+use super::turnaround::{Lateness, Turnaround};
 use super::watch::Watch;
 use crate::capability::{CapabilityBook, KeepsCapabilities};
 use crate::clock::Clock;
@@ -404,6 +404,12 @@ impl Exchange {
     #[must_use]
     pub fn longest_turnaround(&self) -> Duration {
         self.turnaround.allowance(self.transport.latency())
+    }
+
+    /// How late replies are beyond the time of their bytes on the wire; `None` before the first one.
+    #[must_use]
+    pub fn lateness(&self) -> Option<Lateness> {
+        self.turnaround.lateness()
     }
 
     /// Whether replies take longer than is usual for this kind of port.

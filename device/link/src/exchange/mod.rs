@@ -20,4 +20,5 @@ pub use permit::{Permit, Reply};
 pub use request::{Fault, Judgement, Outgoing, PACKET_GAP, RETRIES, Span};
 pub use statistics::{Counters, LinkStatistics};
 pub use trace::Traffic;
+pub use turnaround::Lateness;
 pub use watch::{Interruption, Unwatched, Watch};

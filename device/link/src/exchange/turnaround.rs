@@ -1,11 +1,25 @@
 //! How long a line takes to answer beyond the time of the bytes on the wire, learned from its replies.
 
+use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
 /// Longer than this nothing is waited for unless somebody says so: radio links and serial servers are 50 to 400 ms late.
 pub const LONGEST: Duration = Duration::from_millis(500);
 /// Room beyond what was learned: the 16 ms timer of common USB serial adapters, at both ends of a radio link.
 const ROOM: Duration = Duration::from_millis(32);
+
+/// How late replies are beyond the time of the bytes on the wire, ms.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Lateness {
+    /// Their mean, of which the newer ones are a larger part.
+    pub mean_ms: f64,
+    /// Their mean deviation from it.
+    pub deviation_ms: f64,
+    /// The quickest one.
+    pub shortest_ms: f64,
+    /// The latest one.
+    pub longest_ms: f64,
+}
 
 /// Mean and mean deviation as TCP keeps them (RFC 6298, section 2), with its doubling after each time-out (section 5.5).
 #[derive(Clone, Copy, Debug, Default)]
@@ -19,6 +33,8 @@ pub struct Turnaround {
 struct Learned {
     mean: Duration,
     deviation: Duration,
+    shortest: Duration,
+    longest: Duration,
 }
 
 impl Turnaround {
@@ -26,17 +42,30 @@ impl Turnaround {
     pub fn learn(&mut self, took: Duration) {
         self.timed_out = 0;
         self.learned = Some(match self.learned {
-            None => Learned { mean: took, deviation: took / 2 },
-            Some(Learned { mean, deviation }) => Learned {
+            None => Learned { mean: took, deviation: took / 2, shortest: took, longest: took },
+            Some(Learned { mean, deviation, shortest, longest }) => Learned {
                 mean: mean * 7 / 8 + took / 8,
                 deviation: deviation * 3 / 4 + mean.abs_diff(took) / 4,
+                shortest: shortest.min(took),
+                longest: longest.max(took),
             },
         });
     }
 
     /// Whether other replies came about as late as this.
     pub fn is_usual(&self, took: Duration) -> bool {
-        self.learned.is_some_and(|Learned { mean, deviation }| took <= mean + deviation * 4 + ROOM / 2)
+        self.learned.is_some_and(|Learned { mean, deviation, .. }| took <= mean + deviation * 4 + ROOM / 2)
+    }
+
+    /// What was learned.
+    pub fn lateness(&self) -> Option<Lateness> {
+        let ms = |time: Duration| time.as_secs_f64() * 1e3;
+        self.learned.map(|Learned { mean, deviation, shortest, longest }| Lateness {
+            mean_ms: ms(mean),
+            deviation_ms: ms(deviation),
+            shortest_ms: ms(shortest),
+            longest_ms: ms(longest),
+        })
     }
 
     /// No reply came in time.
@@ -47,7 +76,8 @@ impl Turnaround {
     /// How long the next reply may take on a port where `usual` is enough as a rule. Time-outs count on a line that has shown itself late alone:
     /// elsewhere they tell of an address where nobody is, or of a command that a unit lacks.
     pub fn allowance(&self, usual: Duration) -> Duration {
-        let seen = self.learned.map_or(Duration::ZERO, |Learned { mean, deviation }| mean + deviation * 4);
+        let seen =
+            self.learned.map_or(Duration::ZERO, |Learned { mean, deviation, .. }| mean + deviation * 4);
         if seen <= usual {
             return usual;
         }

@@ -10,7 +10,7 @@ mod probe;
 mod registers;
 mod table;
 
-pub use probe::{LawFindings, probe_law};
+pub use probe::{LawFindings, Timing, probe_law};
 pub use registers::{
     McpHeld, McpLaw, McpNote, McpRegisters, McpWrite, PositionRegisters, VelocityRegisters, gains_of,
     position_registers, velocity_gains, velocity_registers,

@@ -46,29 +46,64 @@ impl LawFindings {
     /// The law that gives these findings, with what was not looked at taken from `usual`; `None` when no known law does.
     #[must_use]
     pub fn law(&self, usual: &McpLaw, position: bool) -> Option<McpLaw> {
-        let feed_forward = if near(self.feed_forward, 1.0) {
-            true
-        } else if self.feed_forward.abs() < TOLERANCE {
-            false
-        } else {
-            return None;
-        };
-        if !near(self.proportional, 1.0) {
+        let feed_forward = self.known_feed_forward()?;
+        if !self.is_proportional_known() {
             return None;
         }
-        let (rate_hz, per_tick) = match RATES_HZ.iter().find(|rate| near(self.sums_per_s, f64::from(**rate)))
-        {
-            Some(rate) => (*rate, true),
-            None if near(self.sums_per_s, 1.0) => (usual.rate_hz, false),
-            None => return None,
+        let (rate_hz, per_tick) = match self.known_timing()? {
+            Timing::PerTick { rate_hz } => (rate_hz, true),
+            Timing::PerSecond => (usual.rate_hz, false),
         };
         let position_scale = match self.position_scale {
-            Some(found) => *SCALES.iter().find(|scale| near(found, **scale))?,
+            Some(_) => self.known_position_scale()?,
             None if position => return None,
             None => usual.position_scale,
         };
         Some(McpLaw { rate_hz, per_tick, position_scale, feed_forward })
     }
+
+    /// Whether the setpoint's share of QPPS is added; `None` where it is neither whole nor nothing.
+    #[must_use]
+    pub fn known_feed_forward(&self) -> Option<bool> {
+        match self.feed_forward {
+            share if near(share, 1.0) => Some(true),
+            share if share.abs() < TOLERANCE => Some(false),
+            _ => None,
+        }
+    }
+
+    /// Whether a P register of 65536 is a gain of 1.
+    #[must_use]
+    pub fn is_proportional_known(&self) -> bool {
+        near(self.proportional, 1.0)
+    }
+
+    /// What I sums over; `None` where no known rate fits.
+    #[must_use]
+    pub fn known_timing(&self) -> Option<Timing> {
+        let rate = RATES_HZ.into_iter().find(|rate| near(self.sums_per_s, f64::from(*rate)));
+        let per_second = near(self.sums_per_s, 1.0).then_some(Timing::PerSecond);
+        rate.map(|rate_hz| Timing::PerTick { rate_hz }).or(per_second)
+    }
+
+    /// The wire value of a position gain of 1; `None` where it was not found, or none that is known fits.
+    #[must_use]
+    pub fn known_position_scale(&self) -> Option<f64> {
+        let found = self.position_scale?;
+        SCALES.into_iter().find(|scale| near(found, *scale))
+    }
+}
+
+/// What an integral sums over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Timing {
+    /// Over the ticks of the loop.
+    PerTick {
+        /// How many of them there are in a second.
+        rate_hz: u32,
+    },
+    /// Over seconds.
+    PerSecond,
 }
 
 fn near(found: f64, known: f64) -> bool {

@@ -20,7 +20,7 @@ pub mod settings;
 #[cfg(test)]
 mod tests;
 
-pub use controller::{PacketSerial, channels, describe_sent, indicators, preview};
+pub use controller::{PacketSerial, channels, describe_sent, indicators, leave_for, preview, sweep_of};
 pub use driver::McpDriver;
 pub use facts::McpFacts;
 pub use family::{

@@ -96,6 +96,11 @@ messages! {
 messages! {
     /// What came back of what was tried, as a clause.
     pub enum McpCauseMessage {
+        NodeTakesNoPackets "a node of a CAN bus takes no packets",
+        NoCommand "these bytes are no command of packet serial",
+        OnePacket "one packet goes out at a time",
+        NotAgreedTo "more would have to be agreed to before this is asked",
+        DoesTooMuch "this command can do more than an examination may",
         NothingAnswered { asked: Message } "nothing answered at {asked}",
         OneByteCame { asked: Message } "one byte came, but no packet serial, from {asked}",
         BytesCame { count: u64, asked: Message } "{count} bytes came, but no packet serial, from {asked}",

@@ -1,13 +1,15 @@
 //! Running a job: the wire it gets, what breaks into it, and the motors stopped on every way out, a panic included.
 
 use super::state::{DeviceLoop, Phase};
+use crate::capability::CapabilityMap;
 use crate::device::Facts;
 use crate::device::channel::Sample;
 use crate::device::drive::Drive;
 use crate::device::event::{DisarmReason, Event};
+use crate::device::inquiry::{Heard, Inquiry};
 use crate::device::job::{JobEnding, JobId, JobReport, QueuedJob};
 use crate::device::job_context::JobHost;
-use crate::exchange::{ExchangeError, Interruption, Reply, Watch};
+use crate::exchange::{ExchangeError, Interruption, Lateness, Reply, Watch};
 use crate::failure::Failure;
 use crate::messages::{CauseMessage, RemedyMessage};
 use crate::transport::TransportError;
@@ -263,6 +265,25 @@ impl JobHost for Host<'_> {
             self.core.note_drive(drive, sent_at);
         }
         self.settle(driven)
+    }
+
+    fn inquire(&mut self, inquiry: &Inquiry<'_>) -> Result<Heard, ExchangeError> {
+        self.check()?;
+        self.read_between()?;
+        if self.core.armed.is_some() {
+            return Err(ExchangeError::impossible(CauseMessage::ArmedMeanwhile));
+        }
+        let heard = self.core.act(self.asked_at, |unit, line| unit.inquire(line, inquiry));
+        self.settle(heard)
+    }
+
+    fn answers(&mut self) -> CapabilityMap {
+        let address = self.identity().address;
+        self.core.exchange.capabilities().of(address)
+    }
+
+    fn lateness(&self) -> Option<Lateness> {
+        self.core.exchange.lateness()
     }
 
     fn facts(&self) -> Facts {

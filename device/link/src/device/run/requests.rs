@@ -1,6 +1,7 @@
 //! What is asked of the loop, one request after the other.
 
 use super::state::{Armed, DeviceLoop};
+use super::sweep::Plan;
 use crate::device::controller::ArmCheck;
 use crate::device::drive::{ArmScope, Drive};
 use crate::device::event::{DisarmReason, Event};
@@ -49,6 +50,7 @@ impl DeviceLoop {
                 self.stream = Some(stream);
                 self.tell_selection();
             }
+            Request::LearnAnew => self.learn_anew(asked_at),
             Request::Trace(on) => self.exchange.switch_trace(on),
             Request::Arm(scope) => self.arm(scope, overtaken, envelope.disarms),
             Request::Drive(drive) => self.drive(drive, asked_at, overtaken),
@@ -75,6 +77,23 @@ impl DeviceLoop {
             Request::Disarm => self.signals.disarm(),
             Request::Disconnect => self.signals.close(),
         }
+    }
+
+    fn learn_anew(&mut self, asked_at: Duration) {
+        if self.armed.is_some() {
+            let on = self.name_of(self.selected);
+            let (came_back, remedy) = (CauseMessage::MotorsArmed, RemedyMessage::DisarmFirst);
+            let failure = Failure::new(ActMessage::LearnAnew, on, came_back, remedy);
+            return self.outbox.send(Event::Failure(failure));
+        }
+        let Some(unit) = self.units.get(self.selected) else { return };
+        self.exchange.capabilities().forget(unit.controller.identity().address);
+        self.simple(ActMessage::LearnAnew, asked_at, |unit, line| unit.look_again(line));
+        if let Some(unit) = self.units.get_mut(self.selected) {
+            unit.plan = Plan::new(unit.controller.poll_list());
+        }
+        self.restart_sweep();
+        self.tell_capabilities();
     }
 
     fn select(&mut self, address: u8) {

@@ -9,6 +9,7 @@ mod discover;
 mod driving;
 mod generation;
 pub mod indicators;
+mod inquiry;
 mod polling;
 mod speaker;
 mod stopping;
@@ -17,4 +18,6 @@ mod unit;
 
 pub use discover::{PacketSerial, identify_node};
 pub use driving::preview;
+pub use inquiry::leave_for;
+pub use polling::sweep_of;
 pub use traffic::describe_sent;

@@ -175,6 +175,16 @@ pub fn commands(polls: &PollList) -> Vec<u8> {
     std::iter::once(commands::READ_VERSION.number()).chain(polled).collect()
 }
 
+/// What is read again and again of a unit that answers so: one command that brings everything, or those of the signals that change quickly.
+#[must_use]
+pub fn sweep_of(is_answered: impl Fn(u8) -> bool) -> Vec<u8> {
+    let number = |poll: &dyn Polled| u8::try_from(poll.item().id).ok().filter(|number| is_answered(*number));
+    match number(ALL_STATUS) {
+        Some(all) => vec![all],
+        None => FAST.iter().filter_map(|poll| number(*poll)).collect(),
+    }
+}
+
 /// What reads the input pins of an MCP.
 pub fn signals() -> PollItem {
     SIGNALS.item()

@@ -94,7 +94,7 @@ impl Speaker {
 
     /// Takes note of how the unit took a command. Whether the firmware is found to lack it: nothing came to it, and the version came right after.
     #[allow(clippy::wildcard_enum_match_arm, reason = "an error that tells nothing of the firmware")]
-    fn learn(
+    pub fn learn(
         self,
         line: &mut Line<'_>,
         command: u8,

@@ -4,7 +4,7 @@ use crate::can::{Monitor, describe};
 use crate::controller::driving::packets;
 use crate::controller::speaker::{Speaker, Wire};
 use crate::controller::traffic::{describe_received, describe_sent};
-use crate::controller::{arming, polling, stopping};
+use crate::controller::{arming, inquiry, polling, stopping};
 use crate::messages::{McpCauseMessage, McpDriverMessage};
 use brushwork_link::Message;
 use brushwork_link::device::Described;
@@ -13,7 +13,7 @@ use brushwork_link::device::Identity;
 use brushwork_link::device::Sample;
 use brushwork_link::device::StatusReport;
 use brushwork_link::device::controller::{ArmCheck, Controller, Line, PollItem, PollList};
-use brushwork_link::device::{StopBytes, UnitStop};
+use brushwork_link::device::{Heard, Inquiry, StopBytes, UnitStop};
 use brushwork_link::exchange::{ExchangeError, Reply, Tries};
 use brushwork_link::transport::{Stream, TransportError};
 use brushwork_mcp_wire::models::{Family, Model};
@@ -152,6 +152,15 @@ impl Controller for Mcp {
             self.has_buffered = true;
         }
         self.speaker.ask_values(line, command, values)
+    }
+
+    fn inquire(&mut self, line: &mut Line<'_>, asked: &Inquiry<'_>) -> Result<Heard, ExchangeError> {
+        inquiry::inquire(self.speaker, line, asked)
+    }
+
+    fn look_again(&mut self, line: &mut Line<'_>) -> Result<(), ExchangeError> {
+        self.polls = polling::find(self.speaker, line)?;
+        Ok(())
     }
 
     fn set_address(&mut self, address: u8) -> bool {
