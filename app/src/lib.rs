@@ -6,7 +6,7 @@
 mod bench;
 
 use brushwork_cli::family::Family as Commands;
-use brushwork_family::{Simulator, simulator};
+use brushwork_family::{Examiner, Simulator, examine, simulator};
 use brushwork_gui::run::{WindowOptions, run as open_window};
 use brushwork_gui::screens::face::Window;
 use brushwork_link::Driver;
@@ -18,6 +18,8 @@ pub struct Family {
     pub driver: &'static dyn Driver,
     /// What simulates them.
     pub simulator: &'static dyn Simulator,
+    /// What examines them, where there are questions.
+    pub examiner: Option<&'static dyn Examiner>,
     /// What the window shows of them.
     pub window: &'static dyn Window,
     /// What they add to the command line.
@@ -36,6 +38,7 @@ pub static FAMILIES: [Family; 2] = [
     Family {
         driver: &brushwork_mcp_client::McpDriver,
         simulator: &brushwork_mcp::McpSimulator,
+        examiner: Some(&brushwork_mcp::McpExaminer),
         window: &brushwork_gui::mcp::Mcp,
         commands: &brushwork_cli::mcp::McpCommands,
         #[cfg(feature = "bench")]
@@ -46,6 +49,7 @@ pub static FAMILIES: [Family; 2] = [
     Family {
         driver: &brushwork_motion_mind_client::MotionMindDriver,
         simulator: &brushwork_motion_mind::MotionMindSimulator,
+        examiner: None,
         window: &brushwork_gui::motion_mind::MotionMind,
         commands: &brushwork_cli::motion_mind::MotionMindCommands,
         #[cfg(feature = "bench")]
@@ -59,6 +63,7 @@ pub static FAMILIES: [Family; 2] = [
 pub fn install() {
     brushwork_link::install(&FAMILIES.each_ref().map(|family| family.driver));
     simulator::install(&FAMILIES.each_ref().map(|family| family.simulator));
+    examine::install(&FAMILIES.iter().filter_map(|family| family.examiner).collect::<Vec<_>>());
     brushwork_gui::install(&FAMILIES.each_ref().map(|family| family.window));
     brushwork_cli::family::install(&FAMILIES.each_ref().map(|family| family.commands));
 }

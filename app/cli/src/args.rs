@@ -11,6 +11,7 @@ use brushwork_plant::machine::StreamIndex;
 use brushwork_values::{Motor, parse_byte};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use super::examine::ExamineArgs;
 use super::family::families;
 use super::monitor::args::MonitorArgs;
 use super::settings::args::SettingsArgs;
@@ -57,6 +58,9 @@ pub enum Command {
     Nodes(NodesArgs),
     /// Show measurements, indicators and why the motors do not run.
     Status(StatusArgs),
+    /// Find out what a controller answers and how, for a report that its owner can send.
+    #[command(display_order = 33)]
+    Examine(ExamineArgs),
     /// Drive a motor until the time is over or you stop it.
     Drive(DriveArgs),
     /// Stop both motors at once.
@@ -151,6 +155,9 @@ pub struct StatusArgs {
     /// Also say which commands this firmware answers, as far as that has been learned.
     #[arg(long, conflicts_with = "watch")]
     pub commands: bool,
+    /// Forget first which commands this firmware lacks, as far as that was learned, and ask for them again.
+    #[arg(long)]
+    pub learn_anew: bool,
     /// Go on until interrupted.
     #[arg(long)]
     pub watch: bool,
@@ -251,6 +258,7 @@ const SIM_EXAMPLES: &str = "Examples:\n  \
     brushwork sim --port ttl1 --pace --address 0x80,0x81,0x82 --pty /tmp/bus\n  \
     brushwork sim --can ascii --node 3,5 --pty /tmp/can\n  \
     brushwork sim --model motion-mind-3 --mode 4 --protocol ascii --address 1,2 --pty /tmp/mm\n  \
+    brushwork sim --like unit.json --pty /tmp/mcp\n  \
     brushwork sim --pty /tmp/mcp --fault drop=0.01 --fault 'plant:locked-shaft@4s,motor=1'\n\n\
     Ctrl-C ends it. `brushwork sim --list` names the models and presets.";
 
@@ -319,6 +327,9 @@ pub struct SimArgs {
     /// Whether an older truth is replaced.
     #[command(flatten)]
     pub replace: Replace,
+    /// Make a unit that behaves as the report says that `brushwork examine --json FILE` wrote.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["model", "generation", "preset", "address", "port", "can", "baud", "script", "rts"])]
+    pub like: Option<PathBuf>,
     /// Name the models and presets, and end.
     #[arg(long)]
     pub list: bool,

@@ -13,7 +13,7 @@ use crossbeam_channel::RecvTimeoutError;
 use super::family;
 use super::shared_args::LineArgs;
 use super::{ConnectArgs, Exit, Family, Interrupt, say};
-use brushwork_core::session::{self, Session, SessionOptions, Simulation};
+use brushwork_core::session::{self, LIKE, Session, SessionOptions, Simulation};
 use brushwork_link::family::addresses_text;
 
 /// How long a controller may take to be found and identified.
@@ -39,6 +39,9 @@ impl Client {
     /// Says on standard error what went wrong and gives the exit code.
     pub fn connect(args: &ConnectArgs, poll: PollRate, interrupt: &Interrupt) -> Result<Self, Exit> {
         let session = open(args, poll)?;
+        if let Some(simulation) = &session.simulation {
+            simulation.unlike().iter().for_each(say);
+        }
         let (identity, stream) = wait_for_identity(&session.device, interrupt)?;
         Ok(Self { session, identity, stream })
     }
@@ -135,7 +138,9 @@ fn first_of(target: &ConnectTarget, family: &dyn Family) -> Option<u8> {
 /// Simulated controllers are made at the addresses that are asked for, unless the target names some itself.
 fn at_addresses(target: ConnectTarget, addresses: &[u8]) -> ConnectTarget {
     match target {
-        ConnectTarget::Sim(text) if !text.contains("address=") && !addresses.is_empty() => {
+        ConnectTarget::Sim(text)
+            if !text.starts_with(LIKE) && !text.contains("address=") && !addresses.is_empty() =>
+        {
             let model = if text.is_empty() { "mcp266" } else { &text };
             let options = addresses.iter().map(|address| format!(",address={address}"));
             ConnectTarget::Sim(format!("{model}{}", options.collect::<String>()))

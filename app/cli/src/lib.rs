@@ -9,6 +9,7 @@
 pub mod args;
 mod client;
 mod drive;
+mod examine;
 mod exit;
 pub mod family;
 pub mod interrupt;
@@ -94,6 +95,7 @@ fn dispatch(
         Command::Nodes(args) => nodes::run(args, out, interrupt),
         Command::Status(args) => status::run(args, out, interrupt),
         Command::Drive(args) => drive::run(args, out, interrupt),
+        Command::Examine(args) => examine::run(args, out, interrupt),
         Command::Stop(args) => stop::run(args, out, interrupt),
         Command::Settings(args) => settings::run(args, out, interrupt),
         Command::Sim(args) => sim::run(args, typed, out, interrupt),

@@ -4,9 +4,11 @@
 
 #![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
 
+pub mod examine;
 pub mod messages;
 pub mod simulator;
 pub mod tuned;
 
+pub use examine::{Examination, Examiner};
 pub use simulator::{Simulator, SimulatorError, Started};
 pub use tuned::{Restored, Target, Tuned};

@@ -23,3 +23,28 @@ messages! {
         CheckLink "Check the link and try again; `brushwork settings read` shows the loops",
     }
 }
+
+messages! {
+    /// What an examination tries, as a bare verb phrase.
+    pub enum ExamineActMessage {
+        TakeStep { title: String } "{title}",
+        Keep "keep what is there",
+        PutSettingsBack "put the settings back",
+        CloseJournal "close the journal",
+    }
+}
+
+messages! {
+    /// What came back of that, as a clause.
+    pub enum ExamineCauseMessage {
+        ReadOtherwise "some of them read otherwise than before",
+        NotWritten { why: String } "{why}",
+    }
+}
+
+messages! {
+    /// What to do about it, as a sentence without its full stop.
+    pub enum ExamineRemedyMessage {
+        SeeUnfinished "`brushwork settings unfinished` shows what they were, and puts them back",
+    }
+}

@@ -1,5 +1,6 @@
 //! Simulated units of a family, as the server in a program drives them, and the list of families that have some.
 
+use crate::examine::Examination;
 use brushwork_canopen::NodeId;
 use brushwork_canopen::adapter::Form;
 use brushwork_link::{FamilyRef, Stream, UnitAddress};
@@ -54,6 +55,14 @@ pub trait Simulator: Send + Sync {
     /// A clause that names the part at fault and what may stand there.
     fn start(&self, text: &str) -> Result<Started, SimulatorError>;
 
+    /// Makes a unit that behaves as an examination says, and says what of that it cannot imitate, a sentence each.
+    ///
+    /// # Errors
+    /// A clause: no unit can be made.
+    fn like(&self, _examination: &Examination) -> Result<(Started, Vec<String>), SimulatorError> {
+        Err(SimulatorError::Spec("the simulator of this family cannot imitate a unit yet".to_owned()))
+    }
+
     /// A setting of a unit, counted from 0, that has no public way over the wire.
     fn hidden(&self, _machine: &mut dyn Machine, _unit: usize, _key: &str) -> Option<i64> {
         None
@@ -95,6 +104,13 @@ pub fn install(simulators: &[&'static dyn Simulator]) {
             known.push(*simulator);
         }
     }
+}
+
+/// The simulator of a family; `None` where it has none.
+#[must_use]
+pub fn of(family: FamilyRef) -> Option<&'static dyn Simulator> {
+    let known = SIMULATORS.read().unwrap_or_else(PoisonError::into_inner);
+    known.iter().find(|simulator| simulator.family() == family).copied()
 }
 
 /// The simulator whose units the text behind `sim:` asks for; `None` in a program without any.

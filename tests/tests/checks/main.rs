@@ -1,5 +1,6 @@
 //! The house rules: layers, the map, licences, and what neither rustfmt nor clippy can see.
 
+mod assumed;
 mod circles;
 mod families;
 mod layers;

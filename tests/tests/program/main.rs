@@ -9,6 +9,7 @@ mod device_safety;
 mod device_thread;
 mod echo;
 mod every_family;
+mod examine;
 mod firmware;
 mod firmware_that_lacks;
 mod foreign_clients;

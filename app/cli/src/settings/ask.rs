@@ -51,7 +51,8 @@ pub fn line(breathe: &dyn Fn() -> Result<(), Exit>) -> Result<String, Exit> {
     }
 }
 
-fn is_yes(line: &str) -> bool {
+/// Whether a line says yes.
+pub fn is_yes(line: &str) -> bool {
     matches!(line.trim().to_lowercase().as_str(), "y" | "yes")
 }
 

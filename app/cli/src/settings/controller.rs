@@ -213,17 +213,19 @@ fn explain(report: &JobReport, by_signal: bool) -> Option<Exit> {
 }
 
 /// One line on a terminal that is overwritten as work goes on; nothing where standard error is no terminal.
-struct Progress {
+pub struct Progress {
     on_terminal: bool,
     is_shown: bool,
 }
 
 impl Progress {
-    fn new() -> Self {
+    /// Of nothing yet.
+    pub fn new() -> Self {
         Self { on_terminal: io::stderr().is_terminal(), is_shown: false }
     }
 
-    fn show(&mut self, fraction: Option<f32>, text: &str) {
+    /// Shows how far it is.
+    pub fn show(&mut self, fraction: Option<f32>, text: &str) {
         if !self.on_terminal {
             return;
         }

@@ -16,6 +16,7 @@ use crossbeam_channel::Receiver;
 use super::args::SimArgs;
 use super::family::families;
 use super::{Exit, Family, Interrupt, NewFile, Output, OutputError, Simulated, say};
+use brushwork_core::examine::like;
 use brushwork_core::session::line::SimulatedLine;
 
 /// Time between two looks at the server, and between two writes of the truth.
@@ -32,7 +33,11 @@ pub fn run(
         list(out)?;
         return Ok(Exit::Done);
     }
-    serve(args, simulate(args, typed)?, out, interrupt)
+    let simulated = match &args.like {
+        Some(report) => imitate(report)?,
+        None => simulate(args, typed)?,
+    };
+    serve(args, simulated, out, interrupt)
 }
 
 /// The units of the family that has a model of those that are named, and of the first family where none has one. Of several the last
@@ -48,6 +53,15 @@ fn simulate(args: &SimArgs, typed: &ArgMatches) -> Result<Simulated, Exit> {
         Some(sentence) => Err(Exit::Usage.saying(sentence)),
         None => family.simulate(typed),
     }
+}
+
+/// A unit that behaves as a report says. What it cannot imitate is said.
+fn imitate(report: &Path) -> Result<Simulated, Exit> {
+    let (_, started, unlike) = like(report)
+        .map_err(|why| Exit::Usage.saying(format!("Could not start the simulated controller: {why}.")))?;
+    unlike.iter().for_each(say);
+    let what = format!("A unit as {} says", report.display());
+    Ok(Simulated { line: SimulatedLine::new(started.machine), what, is_found: true })
 }
 
 fn start(args: &SimArgs, line: SimulatedLine) -> Result<SimHandle<SimulatedLine>, Exit> {

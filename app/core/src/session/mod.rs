@@ -19,7 +19,7 @@ pub mod firmware;
 pub mod line;
 pub mod simulation;
 
-pub use simulation::{Simulation, SimulationError};
+pub use simulation::{LIKE, Simulation, SimulationError};
 
 /// An open link.
 pub struct Session {

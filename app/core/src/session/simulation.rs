@@ -1,6 +1,7 @@
 //! A simulated machine that runs in this program, in real time.
 
 use std::fmt;
+use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use brushwork_canopen::NodeId;
@@ -14,6 +15,10 @@ use brushwork_plant::world::{WorldAction, WorldView};
 use brushwork_script::debug::{Request, View, Wanted};
 
 use super::line::SimulatedLine;
+use crate::examine::like;
+
+/// Before the file of an examination, whose unit is imitated.
+pub const LIKE: &str = "like=";
 
 /// One or more simulated controllers on one line, and the worlds around them.
 pub struct Simulation {
@@ -26,6 +31,8 @@ pub struct Simulation {
     server: SimHandle<SimulatedLine>,
     /// What made its units.
     simulator: &'static dyn Simulator,
+    /// What it cannot imitate of the unit that it was made like, a sentence each.
+    unlike: Vec<String>,
     /// The last look at a script that was asked for.
     script: Arc<Mutex<Option<View>>>,
 }
@@ -67,25 +74,36 @@ impl Simulation {
     /// The text names something that does not exist, or the system gives no thread.
     pub fn start(text: &str) -> Result<Self, SimulationError> {
         let wrong = |why: String| SimulationError::Spec { text: text.to_owned(), why };
-        let Some(simulator) = simulator::asked_for(text) else {
-            return Err(wrong("this program has no simulated controllers".to_owned()));
+        let (simulator, started, unlike) = match text.strip_prefix(LIKE) {
+            Some(path) => like(Path::new(path)).map_err(wrong)?,
+            None => {
+                let Some(simulator) = simulator::asked_for(text) else {
+                    return Err(wrong("this program has no simulated controllers".to_owned()));
+                };
+                let started = simulator.start(text).map_err(|error| match error {
+                    SimulatorError::Spec(why) => wrong(why),
+                    SimulatorError::Params(error) => SimulationError::Params(error),
+                    SimulatorError::Line(why) => SimulationError::Line(why),
+                })?;
+                (simulator, started, Vec::new())
+            }
         };
-        let Started { machine, addresses, nodes, can_form, index, stream, seed } =
-            simulator.start(text).map_err(|error| match error {
-                SimulatorError::Spec(why) => wrong(why),
-                SimulatorError::Params(error) => SimulationError::Params(error),
-                SimulatorError::Line(why) => SimulationError::Line(why),
-            })?;
+        let Started { machine, addresses, nodes, can_form, index, stream, seed } = started;
         let options = ServerOptions { stream: index, seed, ..ServerOptions::default() };
         let line = SimulatedLine::new(machine);
         let server = Server::spawn(line, options, &Endpoint::Channel).map_err(SimulationError::Server)?;
         let (text, script) = (text.to_owned(), Arc::default());
-        Ok(Self { text, addresses, stream, can_form, nodes, server, simulator, script })
+        Ok(Self { text, addresses, stream, can_form, nodes, server, simulator, unlike, script })
     }
 
     /// The protocol family of its units.
     pub fn family(&self) -> FamilyChoice {
         FamilyChoice::of(self.simulator.family())
+    }
+
+    /// What it cannot imitate of the unit that it was made like, a sentence each.
+    pub fn unlike(&self) -> &[String] {
+        &self.unlike
     }
 
     /// Whether it runs and is what `text` describes.

@@ -1,17 +1,20 @@
 //! Simulated MCP and RoboClaw controllers as a program serves them.
 
-use crate::sim_spec::{SimSpec, UnitSpec};
+use crate::config::config_of;
+use crate::like::config_like;
+use crate::sim_spec::SimSpec;
 use brushwork_canopen::NodeId;
+use brushwork_family::examine::Examination;
 use brushwork_family::{Simulator, SimulatorError, Started};
 use brushwork_link::{FamilyRef, Stream};
 use brushwork_mcp_client::script::CHECKSUM_KEY;
 use brushwork_mcp_client::{MCP, unit_address};
-use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
+use brushwork_mcp_sim::controller::{Bus, Controller};
 use brushwork_mcp_wire::crc::crc16_xmodem;
 use brushwork_mcp_wire::models;
+use brushwork_plant::ParamsError;
 use brushwork_plant::machine::{Machine, StreamIndex};
 use brushwork_plant::world::WorldAction;
-use brushwork_plant::{ParamsError, presets};
 use brushwork_script::debug::{Request, View, Wanted};
 use std::any::Any;
 
@@ -46,6 +49,25 @@ impl Simulator for McpSimulator {
             stream,
             seed: spec.seed,
         })
+    }
+
+    fn like(&self, examination: &Examination) -> Result<(Started, Vec<String>), SimulatorError> {
+        let (config, unlike) = config_like(examination).map_err(SimulatorError::Spec)?;
+        let address = config.address;
+        let seed = config.seed;
+        let index = StreamIndex::Usb;
+        let unit = Controller::new(config)?;
+        let bus = Bus::new(vec![unit], index).map_err(|error| SimulatorError::Line(error.to_string()))?;
+        let started = Started {
+            machine: Box::new(bus),
+            addresses: vec![unit_address(address)],
+            nodes: vec![NodeId::DEFAULT],
+            can_form: None,
+            index,
+            stream: Stream::Usb,
+            seed,
+        };
+        Ok((started, unlike))
     }
 
     fn hidden(&self, machine: &mut dyn Machine, unit: usize, key: &str) -> Option<i64> {
@@ -105,23 +127,4 @@ pub fn bus_of(spec: &SimSpec, stream: StreamIndex) -> Result<Bus, SimulatorError
         None => Bus::new(units, stream),
     };
     bus.map_err(|error| SimulatorError::Line(error.to_string()))
-}
-
-/// What a unit is made of.
-pub fn config_of(unit: &UnitSpec, seed: u64) -> ControllerConfig {
-    let preset = |index: usize| {
-        presets::lookup(&unit.presets[index])
-            .expect("the names of presets were checked when the text was read")
-    };
-    let mut config = ControllerConfig {
-        generation: unit.generation,
-        address: unit.address,
-        world: presets::world_of(preset(0), preset(1), unit.model.pins.len()),
-        seed,
-        ..ControllerConfig::of(unit.model)
-    };
-    if unit.node != NodeId::DEFAULT {
-        config.set_node(unit.node);
-    }
-    config
 }

@@ -1,5 +1,6 @@
 //! What a simulated controller is made of.
 
+use super::quirks::Quirks;
 use crate::motion::ControlLaw;
 use crate::settings::{MotorRegisters, Settings, SignalSettings};
 use brushwork_canopen::NodeId;
@@ -30,6 +31,8 @@ pub struct ControllerConfig {
     pub settings: Option<Settings>,
     /// Details in which firmware versions differ.
     pub options: FirmwareOptions,
+    /// What this one unit does otherwise.
+    pub quirks: Quirks,
 }
 
 /// Details in which firmware versions differ within a generation.
@@ -37,6 +40,8 @@ pub struct ControllerConfig {
 pub struct FirmwareOptions {
     /// Version number in the reply to command 21, without the "v"; `None` for the one the sources show for the model.
     pub version: Option<String>,
+    /// The whole text of that reply without its end mark, where it is not made of the model's title and that number.
+    pub text: Option<String>,
     /// Whether commands 0 to 13 are acknowledged. RoboClaw firmware from 4.3.6 on drives and says nothing (public clients,
     /// 2015-2025).
     pub acknowledges_legacy: bool,
@@ -63,6 +68,7 @@ impl ControllerConfig {
             seed: 0,
             settings: None,
             options: FirmwareOptions::default(),
+            quirks: Quirks::default(),
         }
     }
 }
@@ -120,14 +126,14 @@ fn set_input_for(
 
 impl Default for FirmwareOptions {
     fn default() -> Self {
-        Self { version: None, acknowledges_legacy: true }
+        Self { version: None, text: None, acknowledges_legacy: true }
     }
 }
 
 impl FirmwareOptions {
     /// The text of command 21 without its end mark.
     pub(super) fn version_text(&self, model: &Model) -> String {
-        format!("{} v{}", model.title, self.version_number(model))
+        self.text.clone().unwrap_or_else(|| format!("{} v{}", model.title, self.version_number(model)))
     }
 
     /// The number alone, without the "v".

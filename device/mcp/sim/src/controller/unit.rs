@@ -299,12 +299,16 @@ impl Controller {
         if stream != StreamIndex::Usb && framed.address.get() != firmware.settings.unit.address {
             return;
         }
+        let command = framed.command.number;
+        if self.config.quirks.silent.contains(&command) {
+            return;
+        }
         // The bytes of this very request may have made Serial the commanding source.
         firmware.now = unit_now;
         firmware.update_source();
         let answer = firmware.execute(framed);
         let request = framed.request();
-        let generation = self.config.generation;
+        let generation = self.config.quirks.layouts.get(&command).copied().unwrap_or(self.config.generation);
         let reply = match &answer {
             Answer::Silence => return,
             Answer::Ack => encode_reply(&request, generation, &[]),
@@ -314,9 +318,10 @@ impl Controller {
         };
         // A reply that does not fit the table is a mistake of a handler; a test over all commands keeps it from happening.
         debug_assert!(reply.is_ok(), "{}: {reply:?}", framed.command.key);
-        self.send(stream, reply.unwrap_or_default(), Duration::ZERO);
+        let delay = self.config.quirks.delay_of(command);
+        self.send(stream, reply.unwrap_or_default(), delay);
         if let Answer::AckThenStatus { status, after } = answer {
-            self.send(stream, vec![status], after);
+            self.send(stream, vec![status], after + delay);
         }
     }
 

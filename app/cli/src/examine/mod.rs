@@ -1,0 +1,166 @@
+//! `brushwork examine`: finds out what a controller answers and how, and writes a report that its owner can send.
+
+mod args;
+
+use std::io::{self, IsTerminal as _, Write as _};
+use std::time::{Duration, Instant};
+
+use brushwork_core::examine::{Examining, Need, Step, Way};
+use brushwork_core::keep::{Keeping, Store, TrialKeeper, UnitId};
+use brushwork_link::transport::list_ports;
+use brushwork_link::{ArmScope, Event, Job, JobEnding, PollRate, WriteOptions};
+
+pub use args::ExamineArgs;
+
+use super::client::{arm, start};
+use super::interrupt::exit_of_interruption;
+use super::settings::ask::{is_yes, line};
+use super::settings::controller::Progress;
+use super::{Client, Exit, Interrupt, NewFile, Output, say};
+
+/// How long a job may take to end beyond its own limit, or after Ctrl-C.
+const END_LIMIT: Duration = Duration::from_secs(60);
+
+const NOBODY: &str = "Not asked: nobody could be asked whether it may be, and --yes did not name its step.";
+const REFUSED: &str = "Not asked: the owner did not agree.";
+const ENDED: &str = "Not asked: the examination was ended before.";
+const FAILED: &str = "Not asked: its step could not be taken to the end.";
+
+/// Examines, step by step, and writes what was found, also where something broke in.
+pub fn run(args: &ExamineArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    let [mut json, mut text] =
+        [&args.json, &args.output].map(|path| path.as_deref().map(|path| NewFile::new(path, args.replace)));
+    for file in [&json, &text].into_iter().flatten() {
+        file.check()?;
+    }
+    let client = Client::connect(&args.connect, PollRate::Off, interrupt)?;
+    let examining = Examining::begin(&client.identity).map_err(|sentence| Exit::Refused.saying(sentence))?;
+    check_steps(args, &examining)?;
+    let mut ended = Ok(());
+    for step in examining.steps() {
+        ended = ended.and_then(|()| take(step, args, &client, &examining, interrupt));
+        let why = if ended.is_err() { ENDED } else { FAILED };
+        examining.not_asked(step, why);
+    }
+    let found = examining.found();
+    if let Some(file) = &mut json {
+        file.write(found.json().as_bytes())?;
+    }
+    match &mut text {
+        Some(file) => file.write(found.text().as_bytes())?,
+        None => out.line(found.text().trim_end())?,
+    }
+    ended.map(|()| Exit::Done)
+}
+
+fn check_steps(args: &ExamineArgs, examining: &Examining) -> Result<(), Exit> {
+    let keys: Vec<&str> =
+        examining.steps().iter().filter(|step| step.need > Need::Read).map(|step| step.key).collect();
+    match args.yes.iter().find(|named| !keys.contains(&named.as_str())) {
+        None => Ok(()),
+        Some(named) => Err(Exit::Usage
+            .saying(format!("There is no step \"{named}\" to agree to. The steps are {}.", keys.join(", ")))),
+    }
+}
+
+/// Takes a step if it may be taken. What fails in it ends it and not the examination; what breaks in ends that.
+fn take(
+    step: &'static Step,
+    args: &ExamineArgs,
+    client: &Client,
+    examining: &Examining,
+    interrupt: &Interrupt,
+) -> Result<(), Exit> {
+    if examining.is_shut(step) {
+        return Ok(());
+    }
+    if let Some(why) = refusal(step, args, client, interrupt)? {
+        examining.not_asked(step, why);
+        return Ok(());
+    }
+    let options =
+        WriteOptions { own_stream: client.stream, simulated: client.identity.simulated, as_read: true };
+    let unit = UnitId::new(&client.identity, &list_ports().unwrap_or_default());
+    let keeper = Keeping::new(Store::of_user()).keeper(unit, &client.identity.version_text);
+    let taking = examining.take(step, Way { motor: args.motor(), options }, TrialKeeper::new(keeper));
+    let prepared = taking.prepare().map_or(Ok(()), |job| finish(client, job, interrupt));
+    let armed = match taking.moves() {
+        true => prepared.and_then(|()| arm(client.device(), ArmScope::CommandLine, interrupt)),
+        false => prepared,
+    };
+    let worked = armed.and_then(|()| finish(client, taking.work(), interrupt));
+    // A raised interrupt has ended the step; it must not keep anything from being put back.
+    let back = taking.put_back().map_or(Ok(()), |job| {
+        let back = finish(client, job, &Interrupt::default()).map(drop);
+        if back.is_ok() && step.need != Need::Save {
+            say("What the step had changed is as it was before, as reading it has shown.");
+        }
+        back
+    });
+    match worked.and(back) {
+        Err(Exit::Refused) => {
+            examining.not_asked(step, FAILED);
+            Ok(())
+        }
+        other => other,
+    }
+}
+
+/// Why a step may not be taken; `None` where it may.
+fn refusal(
+    step: &Step,
+    args: &ExamineArgs,
+    client: &Client,
+    interrupt: &Interrupt,
+) -> Result<Option<&'static str>, Exit> {
+    if step.need == Need::Read || args.yes.iter().any(|named| named == step.key) {
+        return Ok(None);
+    }
+    if !io::stdin().is_terminal() {
+        return Ok(Some(NOBODY));
+    }
+    let _ = write!(io::stderr(), "\nTo {}: {}\nDo it? [y/N] ", step.title, step.does);
+    let answer = line(&|| client.next_event(interrupt).map(drop))?;
+    Ok((!is_yes(&answer)).then_some(REFUSED))
+}
+
+/// Runs a job to its end, renewing the dead-man. Ctrl-C stops the motors of one that moves, and cancels it.
+fn finish<T: Send + 'static>(client: &Client, job: Job<T>, interrupt: &Interrupt) -> Result<T, Exit> {
+    let deaf = Interrupt::default();
+    let mut deadline = Instant::now() + job.time_limit() + END_LIMIT;
+    let ticket = start(client.device(), job)?;
+    let mut progress = Progress::new();
+    let mut stopped = false;
+    while Instant::now() < deadline {
+        if interrupt.is_raised() && !stopped {
+            stopped = true;
+            deadline = Instant::now() + END_LIMIT;
+            client.device().stop_all();
+            ticket.cancel();
+        }
+        client.device().renew();
+        match client.next_event(&deaf)? {
+            Some(Event::JobProgress { id, fraction, text }) if id == ticket.id() => {
+                progress.show(fraction, &text);
+            }
+            Some(Event::Failure(failure)) => say(failure.to_string()),
+            Some(Event::JobEnded(report)) if report.id == ticket.id() => {
+                drop(progress);
+                return match ticket.ending(report.ending) {
+                    JobEnding::Done(value) => Ok(value),
+                    JobEnding::Interrupted(cause) => {
+                        say(format!("Could not {} to the end: {cause}.", report.name));
+                        Err(exit_of_interruption(cause, stopped))
+                    }
+                    JobEnding::Failed(failure) => Err(Exit::Refused.saying(failure)),
+                    JobEnding::Panicked(word) => Err(Exit::Failed.saying(format!(
+                        "Could not {}: an internal error ({word}). Please report it.",
+                        report.name
+                    ))),
+                };
+            }
+            _ => {}
+        }
+    }
+    Err(Exit::NoLink.saying(format!("Could not {}: it did not end in its time.", ticket.name())))
+}

@@ -1,0 +1,51 @@
+//! What a family asks of its units: questions, the steps in which they are asked, and what has to be agreed to for each.
+
+use serde::{Deserialize, Serialize};
+
+brushwork_values::listed! {
+    /// What has to be agreed to before a step is taken. Only reading is agreed to beforehand.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+    #[serde(rename_all = "snake_case")]
+    pub enum Need {
+        /// It reads only.
+        Read "reads only",
+        /// It reads by commands whose layout is a guess.
+        Guess "reads by guess",
+        /// It writes settings in RAM and puts them back.
+        Write "writes in RAM, and puts back",
+        /// It moves the motor.
+        Move "moves the motor",
+        /// It writes the memory that keeps settings.
+        Save "saves the settings",
+    }
+    /// In words.
+    fn label;
+}
+
+/// Questions that are asked together.
+#[derive(Debug)]
+pub struct Step {
+    /// By which it is named on the command line.
+    pub key: &'static str,
+    /// What it does, as a bare verb phrase.
+    pub title: &'static str,
+    /// What has to be agreed to.
+    pub need: Need,
+    /// What happens to the unit, in sentences for its owner.
+    pub does: &'static str,
+    /// Settings that it writes and that are put back afterwards: keys, or what they begin with.
+    pub touches: &'static [&'static str],
+    /// What it finds out.
+    pub questions: &'static [Question],
+}
+
+/// One thing that nobody knows but the unit.
+#[derive(Debug)]
+pub struct Question {
+    /// By which its answer is found in a report.
+    pub key: &'static str,
+    /// The question.
+    pub question: &'static str,
+    /// How it is asked, and how the answer reads.
+    pub how: &'static str,
+}
