@@ -4,13 +4,16 @@ use brushwork_link::messages::ActMessage;
 use std::time::{Duration, Instant};
 
 use brushwork_link::capability::{Learned, Presence};
-use brushwork_link::device::{Channel, Event, Identity, Job, JobEnding, PlaceState, PollRate, StatusPlace};
+use brushwork_link::device::{
+    Channel, Event, Identity, Job, JobEnding, PlaceState, PollRate, Request, StatusPlace,
+};
 use brushwork_link::settings::read_all;
 use brushwork_values::Severity;
 use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::args::StatusArgs;
+use super::client::ask;
 use super::family::{self, Judged, Said};
 use super::{Client, Exit, Interrupt, Output, OutputError, Readings, say};
 
@@ -30,6 +33,9 @@ struct IndicatorState {
 /// Connects, reads and prints, once or until interrupted.
 pub fn run(args: &StatusArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let client = Client::connect(&args.connect, PollRate::DEFAULT, interrupt)?;
+    if args.learn_anew {
+        ask(client.device(), Request::LearnAnew)?;
+    }
     let mut readings = Readings::default();
     let first_deadline = Instant::now() + FIRST_READING_LIMIT;
     while !readings.is_complete(&client.identity) && Instant::now() < first_deadline {

@@ -295,6 +295,9 @@ impl App {
             Command::ResetEmergencyStop => {
                 self.request(Request::ResetEStop);
             }
+            Command::LearnAnew => {
+                self.request(Request::LearnAnew);
+            }
             Command::Poll(rate) => self.poll(rate),
             Command::ReadLoops => self.read_loops_again(),
             Command::ApplyLoops(columns) => self.apply_loops(columns),

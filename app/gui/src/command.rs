@@ -41,6 +41,8 @@ pub enum Command {
     SetStream(Stream),
     ZeroEncoder(Motor),
     ResetEmergencyStop,
+    /// Forgets what was learned of the unit's firmware, and learns it anew.
+    LearnAnew,
     Poll(PollRate),
     /// Reads the settings of the control loops again.
     ReadLoops,

@@ -105,6 +105,10 @@ fn status_without_status(model: &str, generation: &str) {
     assert!(json["readings"]["main_battery"].is_number(), "what it has is shown: {json}");
     let text = unit.run(&["status"]).stdout.join("\n");
     assert!(text.contains("This firmware does not have: read status (90)."), "{text}");
+    assert_eq!(unit.take_asked(), BTreeMap::new());
+    let anew = unit.run(&["status", "--learn-anew"]);
+    assert_eq!(anew.status.code(), Some(0), "{anew:?}");
+    assert!(unit.take_asked()[&number::READ_STATUS] >= 3, "what was forgotten is asked again");
 }
 
 #[test]

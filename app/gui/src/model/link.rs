@@ -86,6 +86,10 @@ pub struct Search {
     pub what: String,
 }
 
+/// What is said of a unit that tells no status.
+const WITHOUT_STATUS: &str =
+    "This controller tells no status: nothing here says whether a fault or a limit holds its motors.";
+
 impl LinkView {
     /// The unit that is looked at.
     pub fn identity(&self) -> Option<&Identity> {
@@ -215,11 +219,16 @@ impl LinkView {
         Some(titles(unit, absent))
     }
 
+    /// What stands in place of indicators that nothing will ever light, where the selected unit tells no status.
+    pub fn without_status(&self) -> Option<&'static str> {
+        (self.status.is_none() && self.lacking().is_some()).then_some(WITHOUT_STATUS)
+    }
+
     /// Says which commands a firmware is newly known to lack.
     fn lacks(&mut self, address: u8, map: &CapabilityMap) -> Vec<Effect> {
-        let known = self.absent.entry(address).or_default();
-        let new: Vec<u8> = map.absent().filter(|command| !known.contains(command)).collect();
-        known.extend(&new);
+        let absent: Vec<u8> = map.absent().collect();
+        let known = self.absent.insert(address, absent.clone()).unwrap_or_default();
+        let new: Vec<u8> = absent.into_iter().filter(|command| !known.contains(command)).collect();
         let Some(unit) = self.units.iter().find(|unit| unit.address == address && !new.is_empty()) else {
             return Vec::new();
         };

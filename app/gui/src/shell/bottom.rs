@@ -1,7 +1,7 @@
 //! The family's indicators by their abbreviations, and the figures of the link.
 
 use brushwork_link::exchange::LinkStatistics;
-use egui::{Align2, Role, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
+use egui::{Align2, Label, RichText, Role, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
 use crate::model::Model;
 use crate::theme::{self, Palette};
@@ -16,6 +16,11 @@ pub fn bottom_ui(ui: &mut Ui, model: &Model) {
         let indicators = model.front.family().indicators();
         let gaps = ui.spacing().item_spacing.x * indicators.len() as f32;
         let width = ((ui.available_width() - LINK_WIDTH - gaps) / indicators.len() as f32).clamp(38.0, 72.0);
+        if let Some(sentence) = model.front.link.without_status() {
+            let size = vec2(ui.available_width() - LINK_WIDTH, HEIGHT);
+            ui.add_sized(size, Label::new(RichText::new(sentence).weak()).wrap());
+            return link_ui(ui, model);
+        }
         for info in indicators {
             let state = model.front.link.indicators.named(info.short);
             indicator::abbreviated_ui(ui, vec2(width.floor(), HEIGHT), info.short, info.title, state);
@@ -39,7 +44,7 @@ fn link_ui(ui: &mut Ui, model: &Model) {
     painter.text(pos2(rect.right(), rect.bottom() - 2.0), Align2::RIGHT_BOTTOM, second, font, color);
     if let Some(figures) = figures {
         let body = TextStyle::Body.resolve(ui.style());
-        response.on_hover_text(egui::RichText::new(in_full(figures)).font(body));
+        response.on_hover_text(RichText::new(in_full(figures)).font(body));
     }
 }
 

@@ -6,6 +6,9 @@ use crate::model::{Connection, IndicatorState, clock_text};
 use crate::widgets::{heading_ui, indicator};
 
 pub fn indicators_ui(ui: &mut Ui, connection: &Connection, columns: usize) {
+    if let Some(sentence) = connection.link.without_status() {
+        return IndicatorState::Unknown.line_ui(ui, sentence);
+    }
     ui.columns(columns, |ui| {
         let indicators = connection.family().indicators();
         for (index, info) in indicators.iter().enumerate() {

@@ -41,7 +41,7 @@ pub fn status_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
                 face.leds_ui(ui, &model.front);
                 indicators::active_ui(ui, &model.front);
                 ui.add_space(6.0);
-                unit::unit_ui(ui, &model.front);
+                unit::unit_ui(ui, &model.front, commands);
             });
         });
     });

@@ -1,12 +1,14 @@
 //! Who the unit is, and how its link does.
 
-use egui::{Grid, Label, Ui};
+use egui::{Button, Grid, Label, Ui};
 
+use crate::command::{Command, Commands};
 use crate::family::Ability;
+use crate::model::Arming;
 use crate::model::connection::Connection;
 use crate::widgets::heading::heading_ui;
 
-pub fn unit_ui(ui: &mut Ui, connection: &Connection) {
+pub fn unit_ui(ui: &mut Ui, connection: &Connection, commands: &mut Commands) {
     let Some(identity) = connection.link.identity() else { return };
     heading_ui(ui, "Unit and link");
     let addresses = |addresses: &[u8]| {
@@ -49,14 +51,25 @@ pub fn unit_ui(ui: &mut Ui, connection: &Connection) {
         ),
     ];
     let own = connection.family().unit_row(identity);
-    let lacking = connection.link.lacking().map(|commands| ("Lacks commands", commands));
     Grid::new("unit").num_columns(2).spacing([14.0, 3.0]).show(ui, |ui| {
-        for (label, value) in rows.into_iter().chain(own).chain(lacking) {
+        for (label, value) in rows.into_iter().chain(own) {
             ui.weak(label);
             ui.add(Label::new(value).truncate());
             ui.end_row();
         }
     });
+    if let Some(lacking) = connection.link.lacking() {
+        ui.add_space(4.0);
+        ui.add(Label::new(format!("This firmware does not have: {lacking}.")).wrap());
+        let is_armed = matches!(connection.link.arming, Arming::Armed { .. });
+        let button = ui.add_enabled(!is_armed, Button::new("Learn Anew"));
+        let button = button.on_hover_text(
+            "Forgets which commands this firmware lacks, here and on this computer, and asks for them again.",
+        );
+        if button.clicked() {
+            commands.push(Command::LearnAnew);
+        }
+    }
 }
 
 fn or_not_reported(text: &str) -> &str {
