@@ -28,6 +28,14 @@ pub enum Excitation {
     Window(f64),
 }
 
+impl Excitation {
+    /// Within a travel, from its lower to its upper count, where there is one.
+    #[must_use]
+    pub fn within(travel: Option<(i64, i64)>) -> Self {
+        travel.map_or(Self::Free, |(low, high)| Self::Window((high - low) as f64))
+    }
+}
+
 /// What is asked of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]

@@ -49,17 +49,12 @@ pub fn run(args: &DriveArgs, out: &mut Output, interrupt: &Interrupt) -> Result<
 
 /// Stops whatever the driving came to, then gives its exit code.
 fn finish(driven: Result<(), Exit>, client: &Client) -> Result<Exit, Exit> {
-    let was_lost = driven == Err(Exit::NoLink);
-    if !was_lost {
-        client.device().stop_all();
-        let report = stop::wait_for_report(client.device())?;
-        stop::warnings(&report, &client.identity).into_iter().for_each(say);
-        // The motion was carried out, but nothing holds the motor now.
-        if driven.is_ok() && report.left_a_loop_off() {
-            return Err(Exit::Refused);
-        }
-    }
-    driven.map(|()| Exit::Done)
+    // What ended the driving counts for more than what the stop came to.
+    let stopped = match driven {
+        Err(Exit::NoLink) => Ok(()),
+        Ok(()) | Err(_) => stop::stop_driven(client.device(), &client.identity),
+    };
+    driven.and(stopped).map(|()| Exit::Done)
 }
 
 fn command(args: &DriveArgs, client: &Client, interrupt: &Interrupt) -> Result<DriveCommand, Exit> {

@@ -14,6 +14,7 @@ use super::client::{self, CONNECT_LIMIT};
 use super::shared_args::LineArgs;
 use super::{Exit, Interrupt, Output, OutputError, family, say};
 use brushwork_core::session::{self, Session, SessionOptions};
+use brushwork_core::stop::{matters, place};
 
 /// How long the controllers may take to confirm: late replies at 2400 bit/s take 6 s.
 const STOP_LIMIT: Duration = Duration::from_secs(10);
@@ -111,7 +112,7 @@ fn stop_and_find(session: &Session, on_can: bool, interrupt: &Interrupt) -> Resu
 }
 
 /// Waits for the stop that was asked for; a signal does not cut this short, since it ends by itself.
-pub fn wait_for_report(device: &DeviceHandle) -> Result<StopReport, Exit> {
+fn wait_for_report(device: &DeviceHandle) -> Result<StopReport, Exit> {
     let deadline = Instant::now() + STOP_LIMIT;
     let deaf = Interrupt::default();
     while Instant::now() < deadline {
@@ -125,24 +126,15 @@ pub fn wait_for_report(device: &DeviceHandle) -> Result<StopReport, Exit> {
     )))
 }
 
-/// Says what is not plainly stopped.
-pub fn warnings(report: &StopReport, identity: &Identity) -> Vec<String> {
-    warnings_of(report, std::slice::from_ref(identity))
-}
-
-fn warnings_of(report: &StopReport, units: &[Identity]) -> Vec<String> {
-    let mut lines = Vec::new();
-    for unit in &report.units {
-        let place = place(units, unit.address);
-        if !unit.confirmed {
-            lines.push(format!("{place} did not confirm the stop. Cut the motor power."));
-        }
-        let several = report.units.len() > 1;
-        let driven = unit.still_driven_by.iter();
-        lines.extend(driven.map(|text| if several { format!("{place}: {text}") } else { text.to_string() }));
-        lines.extend(unit.failures.iter().map(ToString::to_string));
-    }
-    lines
+/// Stops what a command has set in motion, and says what is not plainly stopped. A signal does not cut this short.
+///
+/// # Errors
+/// The stop was not confirmed, or a loop was left off, so that nothing holds the motor now.
+pub fn stop_driven(device: &DeviceHandle, identity: &Identity) -> Result<(), Exit> {
+    device.stop_all();
+    let report = wait_for_report(device)?;
+    matters(&report, std::slice::from_ref(identity)).into_iter().for_each(|(_, text)| say(text));
+    if report.confirmed() && !report.left_a_loop_off() { Ok(()) } else { Err(Exit::Refused) }
 }
 
 impl LineStop {
@@ -194,7 +186,8 @@ impl LineStop {
 
     /// What is not plainly stopped, and what was not reached.
     fn warnings(&self) -> Vec<String> {
-        let mut lines = warnings_of(&self.report, &self.units);
+        let matters = matters(&self.report, &self.units).into_iter();
+        let mut lines: Vec<String> = matters.map(|(_, text)| text).collect();
         let silent = self.silent();
         match self.asked {
             Addresses::These(_) if !silent.is_empty() => lines.push(format!(
@@ -248,12 +241,6 @@ impl LineStop {
             "no_answer_from": self.silent(),
         }))
     }
-}
-
-/// Where a unit is on its bus, as its family says it.
-fn place(units: &[Identity], address: u8) -> String {
-    let identity = units.iter().find(|identity| identity.address == address);
-    identity.map_or_else(|| format!("{address:#04x}"), Identity::place)
 }
 
 /// Addresses with runs drawn together: "0x81, 0x83 to 0x87".

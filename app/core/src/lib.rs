@@ -10,6 +10,7 @@ pub mod motion;
 pub mod recording;
 pub mod session;
 pub mod settings;
+pub mod stop;
 pub mod tune;
 pub mod words;
 

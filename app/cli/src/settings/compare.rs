@@ -9,7 +9,7 @@ use super::side_name::SideName;
 use super::{backups, profile};
 use crate::{Exit, Interrupt, Output, say};
 use brushwork_core::keep::{Store, today};
-use brushwork_core::settings::known_defaults;
+use brushwork_core::settings::{EEPROM_UNKNOWN, eeprom_title, known_defaults};
 
 /// Compares and prints.
 pub fn run(args: &CompareArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
@@ -50,13 +50,8 @@ fn side(name: &SideName, controller: Option<&Controller<'_>>, other: Option<Side
         }
         (SideName::Eeprom, Some(controller)) => {
             let known = Store::of_user().eeprom(&controller.unit);
-            let known = known.ok_or_else(|| {
-                refuse(
-                    "What the EEPROM of this controller holds is not known: it is known after a save or a reload \
-                     that was proven on this computer.",
-                )
-            })?;
-            Ok(Side::new(format!("EEPROM as known since {}", known.date_text()), known))
+            let known = known.ok_or_else(|| refuse(EEPROM_UNKNOWN))?;
+            Ok(Side::new(eeprom_title(&known), known))
         }
         (SideName::Default, None) => {
             let other = other.ok_or(Exit::Failed)?;

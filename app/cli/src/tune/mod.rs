@@ -7,29 +7,27 @@ mod words;
 use brushwork_core::messages::TuneMessage;
 use std::time::{Duration, Instant};
 
-use brushwork_link::{ArmScope, Event, Job, JobEnding, SettingsTable};
+use brushwork_link::{ArmScope, Event, Request, SettingsTable};
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::experiment_guard::GuardOptions;
 use brushwork_tuning::report::Verdict;
 use brushwork_tuning::tune::{Excitation, Method};
 use brushwork_values::Motor;
 
-use super::client::{arm, start};
+use super::client::ask;
 use super::interrupt::exit_of_interruption;
 use super::settings::controller::Controller;
 use super::settings::memory::save_to_eeprom;
-use super::{Client, Exit, Interrupt, NewFile, Output, say};
+use super::{Exit, Interrupt, NewFile, Output, say};
 use args::{EncoderArg, MethodArg, RunArgs};
 pub use args::{TuneArgs, TuneCommand};
 use brushwork_core::keep::TrialKeeper;
 use brushwork_core::tune::law::{Report, Request as TuneRequest};
-use brushwork_core::tune::live::Live;
-use brushwork_core::tune::{
-    Restored, Slot, Target, file, leaves_off, prepare, restore, run as tuning_job, take,
-};
+use brushwork_core::tune::sequence::{Armed, Ended, Next, Origin, Sequence, Why, Work};
+use brushwork_core::tune::{Restored, Target, file};
 
-/// How long arming and the short jobs may take.
-const ANSWER_LIMIT: Duration = Duration::from_secs(30);
+/// More than the three jobs may take, each of which the device thread ends in its time.
+const LONGEST: Duration = Duration::from_secs(1_800);
 
 /// Tunes or replays.
 pub fn run(args: &TuneArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
@@ -79,7 +77,7 @@ fn keep(report: &Report, file: &mut NewFile<'_>) -> Result<(), Exit> {
     Ok(file.write(text.as_bytes())?)
 }
 
-/// The three jobs. The last one runs whatever became of the others, once anything may have been changed.
+/// Carries out a run. What it changed is put back on every way out on which there is still a link.
 fn session(
     args: &RunArgs,
     method: Method,
@@ -87,34 +85,99 @@ fn session(
     found_report: &mut Option<Report>,
     interrupt: &Interrupt,
 ) -> Result<Restored, Exit> {
-    let client = &controller.client;
     let encoder = args.encoder.map(|encoder| match encoder {
         EncoderArg::Quadrature => EncoderClass::Quadrature,
         EncoderArg::Absolute => EncoderClass::Absolute,
         EncoderArg::AbsoluteWrapping => EncoderClass::AbsoluteWrapping,
     });
-    let target = Target { motor: motor(args), encoder, stream: client.stream };
-    let setup = Slot::default();
-    let keeper = TrialKeeper::new(controller.keeper());
-    let prepared = job(client, prepare(target, controller.subject, &setup, &keeper), interrupt);
-    let Some(before) = take(&setup) else { return Err(prepared.err().unwrap_or(Exit::NoLink)) };
-    let target = Target { encoder: Some(before.encoder), ..target };
-    let found: Slot<Report> = Slot::default();
-    let ran = prepared.and_then(|()| arm(client.device(), ArmScope::CommandLine, interrupt)).and_then(|()| {
-        job(client, tuning_job(target, request(args, method), &found, &Live::default()), interrupt)
-    });
-    *found_report = take(&found);
-    // A raised interrupt has ended the run; it must not keep the old gains from being put back.
-    let kept = found_report.as_ref().filter(|_| ran.is_ok());
-    let restoring = restore(target, before, kept, leaves_off(found_report.as_ref(), None), &keeper);
-    let restored = job(client, restoring, &Interrupt::default());
-    if restored.is_ok() && ran.is_err() {
+    let target = Target { motor: motor(args), encoder, stream: controller.client.stream };
+    let mut sequence = Sequence::new(Work::Tune(request(args, method)), target, ArmScope::CommandLine);
+    let (ended, stopped) = match carry_out(&mut sequence, controller, interrupt) {
+        Ok(ended) => ended,
+        Err(exit) => {
+            *found_report = sequence.link_ended().report;
+            return Err(exit);
+        }
+    };
+    *found_report = ended.report;
+    let exit = match ended.interrupted.map(Why::Interrupted).or(ended.why) {
+        None => None,
+        Some(Why::Interrupted(cause)) => {
+            say(format!("The run was ended: {cause}. The motors were stopped."));
+            Some(exit_of_interruption(cause, stopped))
+        }
+        Some(Why::Failed(failure)) => Some(Exit::Refused.saying(failure)),
+        Some(Why::Panicked(word)) => {
+            let text = format!("Internal error while tuning: {word}. The motors were stopped.");
+            Some(Exit::Failed.saying(text))
+        }
+        // What ended it was said when it came: Ctrl-C, or reasons not to arm.
+        Some(Why::Ended(_)) => Some(if stopped { Exit::Interrupted } else { Exit::Refused }),
+    };
+    if ended.owed.is_some() {
+        say(
+            "What the tuning changed could not be put back: `brushwork settings unfinished` tells what is left.",
+        );
+    }
+    let Some(restored) = ended.restored else { return Err(exit.unwrap_or(Exit::Refused)) };
+    if exit.is_some() {
         say("The old gains and settings are in force again, as reading them back has shown.");
     }
-    if restored.is_ok_and(|restored| restored.loop_left_off) {
+    if restored.loop_left_off {
         say(TuneMessage::LeftOff);
     }
-    ran.and(restored)
+    exit.map_or(Ok(restored), Err)
+}
+
+/// Has the run's jobs done one after the other, renewing the dead-man. Ctrl-C stops all motors, which ends the run, and does not keep
+/// the old gains from being put back; says whether it came.
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
+fn carry_out(
+    sequence: &mut Sequence,
+    controller: &Controller<'_>,
+    interrupt: &Interrupt,
+) -> Result<(Ended, bool), Exit> {
+    let device = controller.device();
+    let origin = Origin { subject: controller.subject, keeper: TrialKeeper::new(controller.keeper()) };
+    let (mut armed, mut stopped) = (Armed::Open, false);
+    let deadline = Instant::now() + LONGEST;
+    while Instant::now() < deadline {
+        if interrupt.is_raised() && !stopped {
+            stopped = true;
+            device.stop_all();
+            sequence.abort("it was stopped");
+        }
+        device.renew();
+        match sequence.next(armed, || Some(origin.clone())) {
+            Some(Next::Arm(scope)) => {
+                armed = Armed::Open;
+                ask(device, Request::Arm(scope))?;
+            }
+            Some(Next::Job(job)) => ask(device, Request::Job(job))?,
+            None => {}
+        }
+        match controller.client.next_event(&Interrupt::default())? {
+            Some(Event::Armed { warnings, .. }) => {
+                warnings.iter().for_each(say);
+                armed = Armed::Yes;
+            }
+            Some(Event::ArmRefused { reasons, .. }) => {
+                reasons.iter().for_each(|reason| say(reason.to_string()));
+                armed = Armed::Refused;
+            }
+            Some(Event::Failure(failure)) => say(failure.to_string()),
+            Some(event) => {
+                if let Event::JobProgress { text, .. } = &event {
+                    say(text);
+                }
+                if let Some(ended) = sequence.take(event) {
+                    return Ok((ended, stopped));
+                }
+            }
+            None => {}
+        }
+    }
+    Err(Exit::NoLink.saying("The run did not end in its time."))
 }
 
 fn motor(args: &RunArgs) -> Motor {
@@ -122,18 +185,15 @@ fn motor(args: &RunArgs) -> Motor {
 }
 
 fn request(args: &RunArgs, method: Method) -> TuneRequest {
-    let excitation = match args.travel {
-        Some(range) => Excitation::Window((range.high - range.low) as f64),
-        None => Excitation::Free,
-    };
+    let travel = args.travel.map(|range| (range.low, range.high));
     TuneRequest {
         method,
         level: f64::from(args.level),
-        excitation,
+        excitation: Excitation::within(travel),
         guard: GuardOptions {
             motor: motor(args).index(),
             max_duty: f64::from(args.max_duty) / 100.0,
-            travel: args.travel.map(|range| (range.low, range.high)),
+            travel,
             max_amps: args.max_current,
             clear_winding: args.clear_lr,
             ..GuardOptions::default()
@@ -170,44 +230,4 @@ fn conclude(
         Exit::Done if restored.loop_left_off => Exit::TunedWithWarnings,
         exit => exit,
     }
-}
-
-/// Runs a job to its end, renewing the dead-man. Ctrl-C stops all motors, which ends the job.
-fn job<T: Send + 'static>(client: &Client, job: Job<T>, interrupt: &Interrupt) -> Result<T, Exit> {
-    let deaf = Interrupt::default();
-    let limit = job.time_limit() + ANSWER_LIMIT;
-    let ticket = start(client.device(), job)?;
-    let deadline = Instant::now() + limit;
-    let mut stopped = false;
-    while Instant::now() < deadline {
-        if interrupt.is_raised() && !stopped {
-            stopped = true;
-            client.device().stop_all();
-        }
-        client.device().renew();
-        match client.next_event(&deaf)? {
-            Some(Event::JobProgress { id, text, .. }) if id == ticket.id() => say(text),
-            Some(Event::Failure(failure)) => say(failure.to_string()),
-            Some(Event::JobEnded(report)) if report.id == ticket.id() => {
-                return match ticket.ending(report.ending) {
-                    JobEnding::Done(output) => Ok(output),
-                    JobEnding::Interrupted(cause) => {
-                        say(format!("The run was ended: {cause}. The motors were stopped."));
-                        Err(exit_of_interruption(cause, stopped))
-                    }
-                    JobEnding::Failed(failure) => {
-                        say(failure.to_string());
-                        Err(Exit::Refused)
-                    }
-                    JobEnding::Panicked(word) => {
-                        say(format!("Internal error while tuning: {word}. The motors were stopped."));
-                        Err(Exit::Failed)
-                    }
-                };
-            }
-            _ => {}
-        }
-    }
-    say("The run did not end in its time.");
-    Err(Exit::NoLink)
 }

@@ -8,6 +8,7 @@
 pub mod file;
 pub mod law;
 pub mod live;
+pub mod sequence;
 
 use crate::messages::CoreActMessage;
 use brushwork_family::messages::LoopActMessage;

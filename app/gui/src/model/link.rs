@@ -8,6 +8,7 @@ use brushwork_link::device::{DisarmReason, StopReport};
 use brushwork_link::{
     ArmScope, Channel, Event, Failure, Identity, LinkStatistics, Message, Sample, StatusReport, Stream,
 };
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
@@ -15,6 +16,7 @@ use super::indicators::Indicators;
 use super::message::Gravity;
 use super::readings::Readings;
 use crate::family::{self, Family};
+use brushwork_core::stop::{Matter, matters};
 
 /// Whether motors may be moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -284,33 +286,20 @@ impl LinkView {
 impl LinkView {
     /// What became of a stop, in one sentence per thing the user has to know.
     fn stopped(&self, report: &StopReport) -> Vec<Effect> {
-        let mut effects = vec![Effect::AtRest];
-        for unit in &report.units {
-            for failure in &unit.failures {
-                effects.push(Effect::Say(Gravity::Error, failure.to_string()));
-            }
-            for driver in &unit.still_driven_by {
-                effects
-                    .push(Effect::Say(Gravity::Warning, format!("{}: {driver}", self.place(unit.address))));
-            }
-        }
-        if report.confirmed() && effects.len() == 1 {
+        let mut matters = matters(report, &self.units);
+        if matters.is_empty() {
             let milliseconds = report.latency().as_secs_f64() * 1000.0;
             let text =
                 format!("Stopped. The stop was on the wire after {milliseconds:.1} ms; duty 0 is confirmed.");
-            effects.push(Effect::Say(Gravity::Note, text));
-        } else if !report.confirmed() && effects.len() == 1 {
-            let text =
-                "Stop was sent, but the controller did not confirm it. Cut the power if a motor still turns.";
-            effects.push(Effect::Say(Gravity::Error, text.to_owned()));
+            return vec![Effect::AtRest, Effect::Say(Gravity::Note, text)];
         }
-        effects
-    }
-
-    /// Where a unit is, as its family writes it.
-    fn place(&self, address: u8) -> String {
-        let unit = self.units.iter().find(|unit| unit.address == address);
-        unit.map_or_else(|| format!("0x{address:02X}"), Identity::place)
+        // The message line shows what was said last: the gravest.
+        matters.sort_by_key(|(matter, _)| Reverse(*matter));
+        let said = matters.into_iter().map(|(matter, text)| match matter {
+            Matter::NotConfirmed | Matter::Failed => Effect::Say(Gravity::Error, text),
+            Matter::StillDriven => Effect::Say(Gravity::Warning, text),
+        });
+        std::iter::once(Effect::AtRest).chain(said).collect()
     }
 }
 

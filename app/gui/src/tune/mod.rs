@@ -23,7 +23,6 @@ pub mod remaining;
 pub mod result;
 pub mod run;
 mod runs;
-pub mod sequence;
 pub mod setup;
 mod sketches;
 pub mod which;
@@ -33,8 +32,8 @@ pub use model::{TuneAction, Tuning};
 pub use which::Loop;
 
 pub use asked::Asked;
+pub use brushwork_core::tune::sequence::{Next, Origin, Sequence, Work};
 pub use figures::{FIGURES, figure_ui};
 pub use looked_at::View;
 pub use measured::Figures;
 pub use run::Run;
-pub use sequence::{Next, Origin, Sequence, Work};

@@ -10,11 +10,12 @@ use brushwork_tuning::tune::{Excitation, Method};
 use brushwork_values::Motor;
 
 use super::calibration::Calibration;
-use super::sequence::Ended;
 use super::{Asked, Loop, Next, Origin, Run, Sequence, View, Work};
 use crate::family::Family;
+use crate::model::watched::interruption;
 use crate::model::{Arming, Effect, Gravity, Screen, SettingsAction};
 use brushwork_core::tune::Target;
+use brushwork_core::tune::sequence::{Armed, Ended, Why};
 
 /// How often L and R are written back before that is given up.
 const MOST_WRITES: u8 = 4;
@@ -107,12 +108,12 @@ impl Setting {
     }
 
     fn request(&self, motor: Motor) -> TuneRequest {
-        let (low, high) = (self.travel.0.round() as i64, self.travel.1.round() as i64);
-        let travel = (!self.turns_freely).then_some((low, high));
+        let (low, high) = self.travel;
+        let travel = (!self.turns_freely).then_some((low.round() as i64, high.round() as i64));
         TuneRequest {
             method: self.method,
             level: self.level,
-            excitation: travel.map_or(Excitation::Free, |_| Excitation::Window((high - low) as f64)),
+            excitation: Excitation::within(travel),
             guard: GuardOptions {
                 motor: motor.index(),
                 max_duty: (self.max_duty_percent / 100.0).clamp(0.2, 1.0),
@@ -384,7 +385,13 @@ impl Tuning {
         refused: bool,
         origin: impl FnOnce() -> Option<Origin>,
     ) -> Option<Next> {
-        self.running.as_mut()?.1.next(arming, refused, origin)
+        let (which, sequence) = self.running.as_mut()?;
+        let armed = match arming {
+            arming if arming.is_armed_for(which.scope()) => Armed::Yes,
+            Arming::Disarmed if refused => Armed::Refused,
+            Arming::Disarmed | Arming::Asked(_) | Arming::Armed { .. } => Armed::Open,
+        };
+        sequence.next(armed, origin)
     }
 
     /// The device thread did not take it.
@@ -407,6 +414,7 @@ impl Tuning {
     fn ended(&mut self, which: Loop, target: Target, ended: Ended) -> Vec<Effect> {
         let mut effects = Vec::new();
         let is_owed = ended.owed.is_some();
+        let why = ended.why.as_ref().map(clause);
         if let Some(before) = ended.owed {
             let unit = self.unit.clone().unwrap_or_default();
             self.owed = Some(Owed { target, which, unit, before });
@@ -417,7 +425,7 @@ impl Tuning {
                     winding.is_due = true;
                 }
                 let panel = self.panel_mut(which, target.motor);
-                let said = said_of(target.motor, &report, ended.why.as_deref(), is_owed);
+                let said = said_of(target.motor, &report, why.as_deref(), is_owed);
                 panel.add(report);
                 if let Some(run) = panel.run_mut() {
                     run.interrupted = ended.interrupted;
@@ -441,7 +449,7 @@ impl Tuning {
                 format!(
                     "{} was not tuned: {}.",
                     target.motor,
-                    ended.why.as_deref().unwrap_or("nothing came of it")
+                    why.as_deref().unwrap_or("nothing came of it")
                 ),
             ),
         });
@@ -449,7 +457,7 @@ impl Tuning {
         if is_owed && !matches!(ended.work, Work::PutBack) {
             effects.push(owed_effect());
         }
-        if ended.loop_left_off {
+        if ended.restored.is_some_and(|restored| restored.loop_left_off) {
             effects.push(Effect::Say(Gravity::Warning, TuneMessage::LeftOff.to_string()));
         }
         effects
@@ -534,6 +542,14 @@ impl Tuning {
             let sequence = Sequence::put_back(owed.target, owed.which.scope(), owed.before);
             self.running = Some((owed.which, sequence));
         }
+    }
+}
+
+/// Why a run came to less than was asked for, in the window's words.
+fn clause(why: &Why) -> String {
+    match why {
+        Why::Interrupted(cause) => interruption(*cause).to_owned(),
+        Why::Failed(_) | Why::Panicked(_) | Why::Ended(_) => why.to_string(),
     }
 }
 

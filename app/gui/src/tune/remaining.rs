@@ -3,7 +3,7 @@
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::tune::{Excitation, Method};
 
-use super::sequence::{Sequence, Work};
+use brushwork_core::tune::sequence::{Sequence, Work};
 
 /// How far it is.
 #[derive(Clone, Copy, Debug, PartialEq)]

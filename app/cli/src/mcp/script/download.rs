@@ -1,7 +1,6 @@
 //! `brushwork script download`.
 
 use std::path::Path;
-use std::time::Duration;
 
 use brushwork_mcp_client::messages::McpActMessage;
 use brushwork_mcp_client::script::{Downloaded, Origin, ScriptImage, Verified, download};
@@ -13,9 +12,6 @@ use super::args::DownloadArgs;
 use crate::mcp::mcl::source::{Source, read_bytes};
 use crate::settings::controller::Controller;
 use crate::{Exit, Interrupt, Output, say};
-
-/// How long a download may take: the largest memory at the slowest rates.
-const LIMIT: Duration = Duration::from_secs(1_200);
 
 /// Downloads and tells how far it is known to have arrived.
 pub fn run(args: &DownloadArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
@@ -59,7 +55,7 @@ pub fn to_controller(
 ) -> Result<Downloaded, Exit> {
     let is_refused =
         image.origin() == Origin::Own && !controller.identity().simulated && !simulated_elsewhere;
-    let finished = controller.run(McpActMessage::DownloadScript, LIMIT, move |wire| {
+    let finished = controller.run(McpActMessage::DownloadScript, image.download_limit(), move |wire| {
         let is_simulated = wire.is_simulated() || simulated_elsewhere;
         download(wire, &image, is_simulated)
     })?;

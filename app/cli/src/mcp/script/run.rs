@@ -8,8 +8,9 @@ use brushwork_link::device::{ArmScope, DisarmReason, Event, Request};
 
 use super::args::{StartArgs, StopArgs};
 use super::download;
-use crate::client::{ANSWER_LIMIT, arm, ask};
+use crate::client::{arm, ask};
 use crate::settings::controller::Controller;
+use crate::stop::stop_driven;
 use crate::{Exit, Interrupt, say};
 
 /// Downloads if asked to, arms, starts, waits, stops.
@@ -22,7 +23,7 @@ pub fn start(args: &StartArgs, interrupt: &Interrupt) -> Result<Exit, Exit> {
     arm(controller.device(), ArmScope::Script, interrupt)?;
     let ran = run(&controller, args.duration);
     if ran != Err(Exit::NoLink) {
-        stop_all(&controller)?;
+        stop_driven(controller.device(), controller.identity())?;
     }
     ran
 }
@@ -30,7 +31,7 @@ pub fn start(args: &StartArgs, interrupt: &Interrupt) -> Result<Exit, Exit> {
 /// Stops the script and the motors.
 pub fn stop(args: &StopArgs, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let controller = Controller::connect(&args.connect, interrupt)?;
-    stop_all(&controller)?;
+    stop_driven(controller.device(), controller.identity())?;
     Ok(Exit::Done)
 }
 
@@ -49,17 +50,4 @@ fn run(controller: &Controller<'_>, duration: Option<Duration>) -> Result<Exit, 
         }
     }
     Ok(Exit::Done)
-}
-
-/// Stops both, and says what is not plainly stopped. A signal does not cut this short.
-fn stop_all(controller: &Controller<'_>) -> Result<(), Exit> {
-    controller.device().stop_all();
-    let deadline = Instant::now() + ANSWER_LIMIT;
-    while Instant::now() < deadline {
-        if let Some(Event::Stopped(report)) = controller.client.next_event(&Interrupt::default())? {
-            crate::stop::warnings(&report, controller.identity()).into_iter().for_each(say);
-            return if report.confirmed() { Ok(()) } else { Err(Exit::Refused) };
-        }
-    }
-    Err(Exit::Refused.saying("The controller did not confirm the stop. Cut the motor power."))
 }

@@ -3,15 +3,11 @@
 use brushwork_link::Job;
 use brushwork_mcp_client::messages::McpActMessage;
 use brushwork_mcp_client::script::{Downloaded, ScriptImage, Verified, download};
-use std::time::Duration;
 
 /// Downloads a file's bytes; comes to a clause of what was sent.
 pub fn download_job(bytes: &[u8]) -> Result<Job<String>, String> {
     let image = ScriptImage::from_file(bytes).map_err(|error| error.to_string())?;
-    let blocks = u32::try_from(image.blocks().len()).unwrap_or(u32::MAX);
-    // A wire of 2400 bit/s takes most of it.
-    let limit = Duration::from_secs(60) + Duration::from_millis(200).saturating_mul(blocks);
-    Ok(Job::new(McpActMessage::DownloadScript, limit, move |context| {
+    Ok(Job::new(McpActMessage::DownloadScript, image.download_limit(), move |context| {
         let is_simulated = context.is_simulated();
         download(context, &image, is_simulated).map(|done| reported(&done))
     }))

@@ -59,9 +59,7 @@ pub enum Verified {
 /// Downloads as a job. `simulated_elsewhere`: the user says that the controller is simulated by another program.
 #[must_use]
 pub fn download_job(image: ScriptImage, simulated_elsewhere: bool) -> Job<Downloaded> {
-    let blocks = u32::try_from(image.blocks().len()).unwrap_or(u32::MAX);
-    let limit = Duration::from_secs(60) + Duration::from_millis(200).saturating_mul(blocks);
-    Job::new(McpActMessage::DownloadScript, limit, move |context| {
+    Job::new(McpActMessage::DownloadScript, image.download_limit(), move |context| {
         let is_simulated = context.is_simulated() || simulated_elsewhere;
         download(context, &image, is_simulated)
     })

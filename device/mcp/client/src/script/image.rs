@@ -1,5 +1,7 @@
 //! A compiled script: whose format it is, and to whom it may be sent.
 
+use std::time::Duration;
+
 use crate::messages::{McpCauseMessage, McpRemedyMessage};
 use brushwork_mcp_wire::crc::crc16_xmodem;
 use brushwork_mcp_wire::script_image;
@@ -69,6 +71,13 @@ impl ScriptImage {
     /// What is sent, block by block.
     pub fn blocks(&self) -> impl ExactSizeIterator<Item = Block> + '_ {
         script_image::blocks(&self.body)
+    }
+
+    /// How long a download of it may take: a wire of 2400 bit/s takes most of that.
+    #[must_use]
+    pub fn download_limit(&self) -> Duration {
+        let blocks = u32::try_from(self.blocks().len()).unwrap_or(u32::MAX);
+        Duration::from_secs(60) + Duration::from_millis(200).saturating_mul(blocks)
     }
 
     /// The CRC-16 of the memory that holds it, the filling of the last block included.

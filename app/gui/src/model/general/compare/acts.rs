@@ -6,17 +6,16 @@ use brushwork_link::settings::{CopiedMotor, SettingsImage, copy_motor, diff};
 use super::{Comparison, Fitted, Side, Take};
 use crate::model::general::GeneralView;
 use brushwork_core::keep::Backup;
-use brushwork_core::settings::{fitted, known_defaults};
+use brushwork_core::settings::{EEPROM_UNKNOWN, eeprom_title, fitted, known_defaults};
 
 impl GeneralView<'_> {
     /// What a side is called.
     pub fn side_title(&self, side: &Side) -> String {
         match side {
             Side::Ram => "Controller (RAM)".to_owned(),
-            Side::Eeprom => match self.settings.known_eeprom() {
-                Some(known) => format!("EEPROM as known since {}", known.date_text()),
-                None => "EEPROM (not known)".to_owned(),
-            },
+            Side::Eeprom => {
+                self.settings.known_eeprom().map_or("EEPROM (not known)".to_owned(), eeprom_title)
+            }
             Side::Profile => match &self.profiles.opened {
                 Some(opened) => format!("Profile {}", opened.name),
                 None => "Profile (none is open)".to_owned(),
@@ -94,11 +93,7 @@ impl GeneralView<'_> {
             Side::Eeprom => match (unit.eeprom(), self.settings.known_eeprom()) {
                 (Some(image), _) => Ok(plain(image)),
                 (None, Some(known)) => Ok(plain(&known.fitted_to(unit.table()).profile.settings)),
-                (None, None) => Err(
-                    "What the EEPROM holds is not known: it is known after a save that was proven, or after it was \
-                     loaded (Read, Load from EEPROM)."
-                        .to_owned(),
-                ),
+                (None, None) => Err(EEPROM_UNKNOWN.to_owned()),
             },
             Side::Profile => {
                 let opened = self.profiles.opened.as_ref();

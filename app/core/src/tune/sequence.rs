@@ -1,20 +1,20 @@
 //! A run from the press of its button to the gains put back: three jobs of the device thread, one after the other.
 //!
-//! The first moves nothing: it reads what the controller holds and shortens the stream's time-out, which disarms. The screen was armed
-//! by hand when the run was asked for, so it is armed again for the second, which moves the motor. The third puts back what must be put
-//! back, on every way out, and is asked for again until it has been done.
+//! The first moves nothing: it reads what the controller holds and shortens the stream's time-out, which disarms. Whoever asked for the
+//! run has agreed to motion, so it is armed again for the second, which moves the motor. The third puts back what must be put
+//! back, on every way out, and is asked for again until it has been done. Window and command line carry out what [`Sequence::next`]
+//! asks for and hand it the events.
 
+use std::fmt;
 use std::sync::PoisonError;
 
-use brushwork_core::tune::law::{Report, Request as TuneRequest, Setup, Trace, Trial, TrialRequest};
 use brushwork_link::device::JobId;
-use brushwork_link::{ArmScope, Event, Interruption, JobEnding, JobTicket, QueuedJob, Subject};
+use brushwork_link::{ArmScope, Event, Failure, Interruption, Job, JobEnding, JobTicket, QueuedJob, Subject};
 
-use crate::model::link::Arming;
-use crate::model::watched::interruption;
-use brushwork_core::keep::TrialKeeper;
-use brushwork_core::tune::live::Live;
-use brushwork_core::tune::{self as jobs, Restored, Slot, Target, take};
+use super::law::{Report, Request as TuneRequest, Setup, Trace, Trial, TrialRequest};
+use super::live::Live;
+use super::{self as jobs, Restored, Slot, Target, take};
+use crate::keep::TrialKeeper;
 
 /// How often putting the gains back is asked for again when something breaks into it.
 const MOST_RESTORES: u8 = 4;
@@ -42,30 +42,72 @@ enum Stage {
 /// What came of a run.
 #[derive(Debug)]
 pub struct Ended {
+    /// What it was to do.
     pub work: Work,
+    /// What a tuning run found, an interrupted one too.
     pub report: Option<Report>,
+    /// What a trial of gains found.
     pub trial: Option<Trial>,
     /// Why there is less than was asked for.
-    pub why: Option<String>,
-    /// What broke into the run itself.
+    pub why: Option<Why>,
+    /// What broke into the run itself, or into the job before it.
     pub interrupted: Option<Interruption>,
     /// What the controller held before and does not hold again.
     pub owed: Option<(Setup, Origin)>,
-    /// A loop did not hold its motor still with what was put back, and was left off.
-    pub loop_left_off: bool,
+    /// What putting everything back came to, where that was done.
+    pub restored: Option<Restored>,
+}
+
+/// Why a run came to less than was asked for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Why {
+    /// Something broke in.
+    Interrupted(Interruption),
+    /// The controller did not do something.
+    Failed(Box<Failure>),
+    /// A bug, with its last word.
+    Panicked(String),
+    /// It was ended from outside: why, as a clause.
+    Ended(String),
+}
+
+impl fmt::Display for Why {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Interrupted(cause) => cause.fmt(f),
+            Self::Failed(failure) => failure.fmt(f),
+            Self::Panicked(word) => write!(f, "Brushwork had a bug. Its last word: {word}"),
+            Self::Ended(why) => f.write_str(why),
+        }
+    }
+}
+
+/// How the arming stands that a run asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Armed {
+    /// It may move the motor.
+    Yes,
+    /// It is not known yet.
+    Open,
+    /// It was refused.
+    Refused,
 }
 
 /// What a run's backup and journal need.
 #[derive(Clone, Debug)]
 pub struct Origin {
+    /// The model and its firmware.
     pub subject: Subject,
+    /// What writes them.
     pub keeper: TrialKeeper,
 }
 
 /// What is to be asked of the device thread next.
 #[derive(Debug)]
 pub enum Next {
+    /// To arm.
     Arm(ArmScope),
+    /// To do this job.
     Job(QueuedJob),
 }
 
@@ -81,7 +123,9 @@ enum Asked {
 /// One run.
 #[derive(Debug)]
 pub struct Sequence {
+    /// What it does.
     pub work: Work,
+    /// With which motor.
     pub target: Target,
     scope: ArmScope,
     stage: Stage,
@@ -93,15 +137,19 @@ pub struct Sequence {
     before: Option<Setup>,
     found: Slot<Report>,
     tried: Slot<Trial>,
+    /// The run as it goes on.
     pub live: Live,
     /// What it does at the moment, and since when on the trace.
     texts: Vec<(String, f64)>,
-    why: Option<String>,
+    why: Option<Why>,
     interrupted: Option<Interruption>,
-    loop_left_off: bool,
+    /// The run itself has come to its end.
+    is_complete: bool,
+    restored: Option<Restored>,
 }
 
 impl Sequence {
+    /// A run of which nothing is begun yet.
     pub fn new(work: Work, target: Target, scope: ArmScope) -> Self {
         let live = Live::new(Trace::new(target.motor.index(), target.encoder.unwrap_or_default()));
         Self {
@@ -120,7 +168,8 @@ impl Sequence {
             texts: Vec::new(),
             why: None,
             interrupted: None,
-            loop_left_off: false,
+            is_complete: false,
+            restored: None,
         }
     }
 
@@ -154,6 +203,7 @@ impl Sequence {
         self.texts.windows(2).map(|pair| pair[1].1 - pair[0].1).collect()
     }
 
+    /// Whether everything is being put back.
     pub fn is_restoring(&self) -> bool {
         self.stage == Stage::Restoring
     }
@@ -163,7 +213,7 @@ impl Sequence {
         if self.stage == Stage::Restoring {
             return;
         }
-        self.why.get_or_insert_with(|| why.to_owned());
+        self.why.get_or_insert_with(|| Why::Ended(why.to_owned()));
         if self.stage == Stage::Arming {
             self.go_to(Stage::Restoring);
         }
@@ -182,21 +232,18 @@ impl Sequence {
     }
 
     /// What to ask for now, if anything; asked in every frame. `origin` is asked once, before anything else.
-    pub fn next(
-        &mut self,
-        arming: Arming,
-        refused: bool,
-        origin: impl FnOnce() -> Option<Origin>,
-    ) -> Option<Next> {
+    pub fn next(&mut self, armed: Armed, origin: impl FnOnce() -> Option<Origin>) -> Option<Next> {
         if self.origin.is_none() {
             self.origin = origin();
         }
         let Origin { subject, keeper } = self.origin.clone()?;
         if self.stage == Stage::Arming {
-            if arming.is_armed_for(self.scope) {
-                self.go_to(Stage::Running);
-            } else if matches!(self.asked, Asked::Arming) && refused && arming == Arming::Disarmed {
-                self.abort("the screen could not be armed again");
+            match armed {
+                Armed::Yes => self.go_to(Stage::Running),
+                Armed::Refused if matches!(self.asked, Asked::Arming) => {
+                    self.abort("the screen could not be armed again");
+                }
+                Armed::Open | Armed::Refused => {}
             }
         }
         if !matches!(self.asked, Asked::Nothing) {
@@ -214,8 +261,7 @@ impl Sequence {
                 Work::PutBack => return None,
             },
             Stage::Restoring => {
-                let restore = jobs::restore(self.target, self.before?, None, self.leaves_loop_off(), &keeper);
-                let (job, ticket) = restore.queued();
+                let (job, ticket) = self.restore(self.before?, &keeper).queued();
                 self.asked = Asked::Restore(ticket);
                 return Some(Next::Job(job));
             }
@@ -225,11 +271,14 @@ impl Sequence {
         Some(Next::Job(job))
     }
 
-    /// Whether the run has left a loop off, for a reason that its result tells.
-    fn leaves_loop_off(&self) -> bool {
+    /// What puts everything back but the gains of a run that has ended as it should, where they are to be kept, and a loop that was
+    /// left off for a reason that the result tells.
+    fn restore(&self, before: Setup, keeper: &TrialKeeper) -> Job<Restored> {
         let report = self.found.lock().unwrap_or_else(PoisonError::into_inner);
         let trial = self.tried.lock().unwrap_or_else(PoisonError::into_inner);
-        jobs::leaves_off(report.as_ref(), trial.as_ref())
+        let leaves_off = jobs::leaves_off(report.as_ref(), trial.as_ref());
+        let kept = report.as_ref().filter(|_| self.is_complete);
+        jobs::restore(self.target, before, kept, leaves_off, keeper)
     }
 
     /// The device thread did not take what was asked for: it is asked again.
@@ -270,8 +319,8 @@ impl Sequence {
         match std::mem::replace(&mut self.asked, Asked::Nothing) {
             Asked::Work(_) => self.work_ended(ending),
             Asked::Restore(ticket) => match ticket.ending(ending) {
-                JobEnding::Done(reported) => {
-                    self.loop_left_off = reported.loop_left_off;
+                JobEnding::Done(restored) => {
+                    self.restored = Some(restored);
                     Some(self.end(None))
                 }
                 ending if self.restores >= MOST_RESTORES => {
@@ -291,10 +340,11 @@ impl Sequence {
     /// The job before the run has ended, or the run itself.
     fn work_ended(&mut self, ending: JobEnding) -> Option<Ended> {
         let is_done = matches!(ending, JobEnding::Done(()));
+        if let JobEnding::Interrupted(cause) = ending {
+            self.interrupted = Some(cause);
+        }
         if self.stage == Stage::Running {
-            if let JobEnding::Interrupted(cause) = ending {
-                self.interrupted = Some(cause);
-            }
+            self.is_complete = is_done;
             self.note(ending);
             self.go_to(Stage::Restoring);
             return None;
@@ -313,9 +363,9 @@ impl Sequence {
     fn note<T>(&mut self, ending: JobEnding<T>) {
         let why = match ending {
             JobEnding::Done(_) => return,
-            JobEnding::Failed(failure) => failure.to_string(),
-            JobEnding::Panicked(word) => format!("Brushwork had a bug. Its last word: {word}"),
-            JobEnding::Interrupted(cause) => interruption(cause).to_owned(),
+            JobEnding::Failed(failure) => Why::Failed(Box::new(failure)),
+            JobEnding::Panicked(word) => Why::Panicked(word),
+            JobEnding::Interrupted(cause) => Why::Interrupted(cause),
         };
         self.why.get_or_insert(why);
     }
@@ -328,13 +378,13 @@ impl Sequence {
             why: self.why.take(),
             interrupted: self.interrupted,
             owed: owed.zip(self.origin.clone()),
-            loop_left_off: self.loop_left_off,
+            restored: self.restored,
         }
     }
 
     /// The link is gone: what was not put back is owed.
     pub fn link_ended(mut self) -> Ended {
-        self.why.get_or_insert_with(|| "the link was lost".to_owned());
+        self.why.get_or_insert_with(|| Why::Ended("the link was lost".to_owned()));
         self.before = self.before.or_else(|| take(&self.setup));
         let owed = self.before;
         self.end(owed)
