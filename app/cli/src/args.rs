@@ -6,12 +6,14 @@ use std::time::Duration;
 use super::tune::TuneArgs;
 use brushwork_canopen::adapter::Form;
 use brushwork_link::FamilyChoice;
+use brushwork_link::family::addresses_text;
 use brushwork_plant::faults::FAULT_SYNTAX;
 use brushwork_plant::machine::StreamIndex;
 use brushwork_values::{Motor, parse_byte};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::examine::ExamineArgs;
+use super::examples;
 use super::family::families;
 use super::monitor::args::MonitorArgs;
 use super::settings::args::SettingsArgs;
@@ -24,8 +26,7 @@ use super::{ConnectArgs, Replace, exit, parse_seconds};
     name = "brushwork",
     version,
     about = "Configures, drives and tunes brushed-DC motor controllers",
-    long_about = "Configures, drives and tunes brushed-DC motor controllers (MCP / RoboClaw over packet serial, Motion Mind 3).\n\
-                  Without a command the window opens.",
+    long_about = examples::about(),
     after_long_help = exit::HELP,
     args_conflicts_with_subcommands = true,
 )]
@@ -41,8 +42,8 @@ pub struct Cli {
 /// How the window opens.
 #[derive(Debug, Clone, Default, Args)]
 pub struct WindowArgs {
-    /// Connect at once: sim:mcp266, a port such as /dev/ttyACM0 or COM3, or tcp:HOST:PORT.
-    #[arg(long, value_name = "TARGET")]
+    /// What to connect to at once.
+    #[arg(long, value_name = "TARGET", help = examples::open_help())]
     pub open: Option<String>,
     /// Draw without smoothing, which spares the processor where there is no graphics card.
     #[arg(long)]
@@ -70,7 +71,7 @@ pub enum Command {
     /// Run simulated controllers on a pseudo-terminal or a TCP port.
     #[command(display_order = 20)]
     Sim(SimArgs),
-    /// Print the reference of packet serial, or of the Motion Mind.
+    /// Print the reference of a family's protocol.
     #[command(display_order = 30)]
     Protocol(ProtocolArgs),
     /// Decode traffic: our own, another program's, or a file's.
@@ -125,14 +126,14 @@ pub struct ListArgs {
 
 /// Arguments of `brushwork nodes`.
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  \
-    brushwork nodes --connect can:/dev/ttyUSB0\n  \
-    brushwork nodes --connect can:COM5,form=binary,baud=230400 --json\n  \
-    brushwork nodes --connect sim:mcp266,can,node=3,node=5\n\n\
-    Every node id is asked for its device type, and heartbeats are listened for. The bus rate is the adapter's own setting.")]
+#[command(after_help = examples::after("nodes", &[
+    "nodes --connect can:/dev/ttyUSB0",
+    "nodes --connect can:COM5,form=binary,baud=230400 --json",
+    "nodes --connect {sim},can,node=3,node=5",
+], "Every node id is asked for its device type, and heartbeats are listened for. The bus rate is the adapter's own setting."))]
 pub struct NodesArgs {
     /// The adapter: can:PORT[,baud=115200,form=ascii|binary], or simulated nodes.
-    #[arg(long, short = 'c', value_name = "TARGET", default_value = "sim:mcp266,can")]
+    #[arg(long, short = 'c', value_name = "TARGET", default_value = examples::bus())]
     pub connect: String,
     /// Print JSON.
     #[arg(long)]
@@ -141,10 +142,11 @@ pub struct NodesArgs {
 
 /// Arguments of `brushwork status`.
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  \
-    brushwork status --connect sim:mcp266\n  \
-    brushwork status --connect /dev/ttyACM0 --watch\n  \
-    brushwork status --connect tcp:127.0.0.1:7000 --address 0x81 --json")]
+#[command(after_help = examples::after("status", &[
+    "status --connect {sim}",
+    "status --connect /dev/ttyACM0 --watch",
+    "status --connect tcp:127.0.0.1:7000 --address 0x81 --json",
+], ""))]
 pub struct StatusArgs {
     /// The controller.
     #[command(flatten)]
@@ -170,12 +172,11 @@ pub struct StatusArgs {
 #[derive(Debug, Args)]
 #[command(
     group(clap::ArgGroup::new("setpoint").required(true).args(["duty", "speed", "position", "by"])),
-    after_help = "Examples:\n  \
-        brushwork drive --connect sim:mcp266 --motor 1 --duty 25 --for 2\n  \
-        brushwork drive --connect /dev/ttyACM0 --motor both --speed -12000 --accel 24000 --for 5\n  \
-        brushwork drive --connect /dev/ttyACM0 --motor 2 --position 4000 --speed-limit 8000 --for 3\n  \
-        brushwork drive --connect /dev/ttyUSB0,family=motion-mind --by -500 --for 2\n\n\
-        Both motors are stopped when the time is over, on Ctrl-C, SIGTERM, SIGHUP, a closed pipe, a fault or a lost link."
+    after_help = examples::after("drive", &[
+        "drive --connect {sim} --motor 1 --duty 25 --for 2",
+        "drive --connect /dev/ttyACM0 --motor both --speed -12000 --accel 24000 --for 5",
+        "drive --connect /dev/ttyACM0 --motor 2 --position 4000 --speed-limit 8000 --for 3",
+    ], "Both motors are stopped when the time is over, on Ctrl-C, SIGTERM, SIGHUP, a closed pipe, a fault or a lost link.")
 )]
 pub struct DriveArgs {
     /// The controller.
@@ -252,22 +253,21 @@ pub struct StopArgs {
     pub json: bool,
 }
 
-const SIM_EXAMPLES: &str = "Examples:\n  \
-    brushwork sim --pty /tmp/mcp\n  \
-    brushwork sim --model mcp2166 --generation 4 --preset flywheel --tcp 127.0.0.1:7000\n  \
-    brushwork sim --port ttl1 --pace --address 0x80,0x81,0x82 --pty /tmp/bus\n  \
-    brushwork sim --can ascii --node 3,5 --pty /tmp/can\n  \
-    brushwork sim --model motion-mind-3 --mode 4 --protocol ascii --address 1,2 --pty /tmp/mm\n  \
-    brushwork sim --like unit.json --pty /tmp/mcp\n  \
-    brushwork sim --pty /tmp/mcp --fault drop=0.01 --fault 'plant:locked-shaft@4s,motor=1'\n\n\
-    Ctrl-C ends it. `brushwork sim --list` names the models and presets.";
+const SIM_EXAMPLES: [&str; 5] = [
+    "sim --pty /tmp/unit",
+    "sim --port ttl1 --pace --address 0x80,0x81,0x82 --pty /tmp/bus",
+    "sim --can ascii --node 3,5 --pty /tmp/can",
+    "sim --like unit.json --pty /tmp/unit",
+    "sim --pty /tmp/unit --fault drop=0.01 --fault 'plant:locked-shaft@4s,motor=1'",
+];
+const SIM_NOTE: &str = "Ctrl-C ends it. `brushwork sim --list` names the models and presets.";
 
 /// Arguments of `brushwork sim`.
 #[derive(Debug, Args)]
-#[command(after_help = format!("{SIM_EXAMPLES}\n\nFaults: {FAULT_SYNTAX}"))]
+#[command(after_help = examples::after("sim", &SIM_EXAMPLES, &format!("{SIM_NOTE}\n\nFaults: {FAULT_SYNTAX}")))]
 pub struct SimArgs {
     /// Controller model; a comma-separated list makes a bus of several models.
-    #[arg(long, value_name = "MODEL", default_value = "mcp266", value_delimiter = ',')]
+    #[arg(long, value_name = "MODEL", default_value = examples::model(), value_delimiter = ',')]
     pub model: Vec<String>,
     /// Firmware generation, 1 to 4: widths and meanings of the replies.
     #[arg(long, value_name = "1..4", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=4))]
@@ -275,8 +275,8 @@ pub struct SimArgs {
     /// Motor preset; two, separated by a comma, give motor 1 and motor 2 different ones.
     #[arg(long, value_name = "PRESET", value_delimiter = ',', num_args = 1)]
     pub preset: Vec<String>,
-    /// Address, or a comma-separated list: one simulated unit for each, on one line. 0x80 to 0x87, or 1 to 98 for a Motion Mind 3.
-    #[arg(long, value_name = "ADDRESS", value_delimiter = ',', value_parser = parse_unit_number)]
+    /// Addresses of simulated units on one line.
+    #[arg(long, value_name = "ADDRESS", value_delimiter = ',', value_parser = parse_unit_number, help = examples::unit_help())]
     pub address: Vec<u8>,
     /// What a family alone has.
     #[command(flatten)]
@@ -342,23 +342,18 @@ pub struct OfFamilies {}
 
 /// A unit's number as typed; what numbers there are depends on the model.
 fn parse_unit_number(text: &str) -> Result<u8, String> {
-    parse_byte(text)
-        .ok_or_else(|| format!("\"{text}\" is no address; an example is 0x80, or 1 for a Motion Mind 3"))
+    parse_byte(text).ok_or_else(|| format!("\"{text}\" is no address: use that of {}", addresses_text()))
 }
 
 /// Arguments of `brushwork protocol`.
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  \
-    brushwork protocol\n  \
-    brushwork protocol 28 read_status\n  \
-    brushwork protocol --family motion-mind WRITE_STORE PTERM\n  \
-    brushwork protocol --json")]
+#[command(after_help = examples::after("protocol", &["protocol", "protocol 28 read_status", "protocol --json"], ""))]
 pub struct ProtocolArgs {
-    /// Only these commands, by number or key; for a Motion Mind also registers by name.
+    /// Only these commands, by number or key, or registers by name where the family has some.
     #[arg(value_name = "COMMAND")]
     pub commands: Vec<String>,
     /// Whose protocol.
-    #[arg(long, value_name = "mcp|motion-mind", default_value_t, hide_default_value = true)]
+    #[arg(long, value_name = examples::names(&[]), default_value_t, hide_default_value = true)]
     pub family: FamilyChoice,
     /// Print JSON.
     #[arg(long)]

@@ -10,6 +10,7 @@ use brushwork_link::{
 };
 use crossbeam_channel::RecvTimeoutError;
 
+use super::examples;
 use super::family;
 use super::shared_args::LineArgs;
 use super::{ConnectArgs, Exit, Family, Interrupt, say};
@@ -141,7 +142,7 @@ fn at_addresses(target: ConnectTarget, addresses: &[u8]) -> ConnectTarget {
         ConnectTarget::Sim(text)
             if !text.starts_with(LIKE) && !text.contains("address=") && !addresses.is_empty() =>
         {
-            let model = if text.is_empty() { "mcp266" } else { &text };
+            let model = if text.is_empty() { examples::model() } else { &text };
             let options = addresses.iter().map(|address| format!(",address={address}"));
             ConnectTarget::Sim(format!("{model}{}", options.collect::<String>()))
         }

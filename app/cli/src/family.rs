@@ -5,6 +5,7 @@
 use std::sync::OnceLock;
 
 use brushwork_core::session::line::SimulatedLine;
+use brushwork_core::settings::Act;
 use brushwork_link::family::Model;
 use brushwork_link::{DeviceHandle, FamilyChoice, FamilyRef, Identity, SettingsImage, SettingsTable, Wire};
 use brushwork_values::Motor;
@@ -25,6 +26,9 @@ pub trait Family: Send + Sync {
     fn commands(&self) -> Vec<Tool> {
         Vec::new()
     }
+
+    /// What the help pages say of it.
+    fn examples(&self) -> Examples;
 
     /// What a list of simulated controllers says of a model of its own.
     fn simulated(&self, model: &Model) -> SimulatedModel;
@@ -84,6 +88,11 @@ pub trait Family: Send + Sync {
         Ok(0)
     }
 
+    /// What an act on the settings does to a motor, where that is to be known before.
+    fn note_of(&self, _act: &Act) -> Option<&'static str> {
+        None
+    }
+
     /// How a unit is set up, as a line of `status`.
     fn set_up(&self, _identity: &Identity) -> Option<String> {
         None
@@ -102,6 +111,17 @@ pub trait Family: Send + Sync {
     /// The addresses to which a stop of a whole line is written, whoever is there. None where a broadcast reaches more units than are
     /// searched for on a line that is not known to have them.
     fn stopped_addresses(&self) -> Vec<u8>;
+}
+
+/// What a family gives to the help pages.
+#[derive(Clone, Copy, Debug)]
+pub struct Examples {
+    /// The model that stands in examples, and is simulated where none is named.
+    pub model: &'static str,
+    /// What can be said behind it: "[,generation=4,preset=NAME]".
+    pub options: &'static str,
+    /// Lines for the examples of a command, without the program's name: "protocol --family NAME COMMAND".
+    pub lines: &'static [&'static str],
 }
 
 /// What a list says of a simulated model.

@@ -10,6 +10,7 @@ pub mod args;
 mod client;
 mod drive;
 mod examine;
+pub mod examples;
 mod exit;
 pub mod family;
 pub mod interrupt;

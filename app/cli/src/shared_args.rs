@@ -10,33 +10,33 @@ use clap::{Args, ValueEnum};
 
 use brushwork_values::parse_byte;
 
+use super::examples;
+
 /// Which controller, and how to reach it.
 #[derive(Debug, Clone, Args)]
 pub struct ConnectArgs {
-    /// sim:mcp266[,generation=4,preset=NAME], /dev/ttyACM0, /dev/ttyUSB0,baud=115200,stream=ttl1, COM3 or
-    /// tcp:HOST:PORT; a CANopen bus as can:PORT[,node=3,form=binary]; a Motion Mind as sim:motion-mind-3[,mode=4,protocol=ascii]
-    /// or with ,family=motion-mind behind its port. ,latency=800 lets replies take 800 ms; packet serial finds up to 500 ms out.
-    #[arg(long, short = 'c', alias = "to", value_name = "TARGET", default_value = "sim:mcp266")]
+    /// What to connect to.
+    #[arg(long, short = 'c', alias = "to", value_name = "TARGET", default_value = examples::target(), help = examples::connect_help())]
     pub connect: String,
     /// Address of the controller on its line, by default that of a new unit.
     #[arg(long, value_name = "ADDRESS", value_parser = parse_connect_address, help = address_help())]
     pub address: Option<u8>,
     /// Which protocol family to look for; without it each in turn.
-    #[arg(long, value_name = "auto|mcp|motion-mind", default_value_t, hide_default_value = true)]
+    #[arg(long, value_name = examples::names(&["auto"]), default_value_t, hide_default_value = true)]
     pub family: FamilyChoice,
 }
 
 /// A line with all its controllers, or some of them.
 #[derive(Debug, Args)]
 pub struct LineArgs {
-    /// As for the other commands: sim:mcp266, /dev/ttyACM0, /dev/ttyUSB0,baud=115200,stream=ttl1, COM3, tcp:HOST:PORT or can:PORT.
-    #[arg(long, short = 'c', alias = "to", value_name = "TARGET", default_value = "sim:mcp266")]
+    /// What to connect to.
+    #[arg(long, short = 'c', alias = "to", value_name = "TARGET", default_value = examples::target(), help = examples::line_help())]
     pub connect: String,
     /// Addresses, or node ids on a CAN bus, with commas between them: 0x80,0x81. Without it all that the line has.
     #[arg(long, value_name = "ADDRESS", value_delimiter = ',', value_parser = parse_line_address)]
     pub address: Vec<u8>,
     /// Which protocol family to look for; without it each in turn.
-    #[arg(long, value_name = "auto|mcp|motion-mind", default_value_t, hide_default_value = true)]
+    #[arg(long, value_name = examples::names(&["auto"]), default_value_t, hide_default_value = true)]
     pub family: FamilyChoice,
 }
 

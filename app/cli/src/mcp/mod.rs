@@ -18,7 +18,7 @@ use clap::ArgMatches;
 use serde_json::json;
 
 use super::{Exit, Family, Interrupt, Page, Readings, Simulated};
-use crate::family::{Judged, Said, SimulatedModel};
+use crate::family::{Examples, Judged, Said, SimulatedModel};
 use crate::monitor::follower::Follower;
 use crate::tool::Tool;
 use decoder::Decoder;
@@ -41,6 +41,14 @@ impl Family for McpCommands {
             Tool::new("script", 11, script, script::run),
             Tool::new("mcl", 40, mcl, mcl::run),
         ]
+    }
+
+    fn examples(&self) -> Examples {
+        Examples {
+            model: "mcp266",
+            options: "[,generation=4,preset=NAME]",
+            lines: &["sim --model mcp2166 --generation 4 --preset flywheel --tcp 127.0.0.1:7000"],
+        }
     }
 
     fn simulated(&self, model: &Model) -> SimulatedModel {

@@ -5,21 +5,22 @@ use std::time::Duration;
 
 use clap::Args;
 
+use crate::examples;
 use crate::shared_args::{ConnectArgs, parse_seconds};
+
+const NOTE: &str = "With --pty or --tcp every byte is passed on unchanged, both ways. When that ends while the other program has motors \
+                    running, they are stopped.\n\
+                    --decode reads bytes in hexadecimal, with or without 0x, separated by spaces or commas; # starts a comment. An \
+                    empty line is a pause.";
 
 /// Arguments of `brushwork monitor`.
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  \
-    brushwork monitor --connect sim:mcp266 --for 2\n  \
-    brushwork monitor --connect /dev/ttyACM0 --pty /tmp/tap     (another program opens /tmp/tap)\n  \
-    brushwork monitor --connect /dev/ttyUSB0,baud=115200 --tcp 127.0.0.1:7001 --json\n  \
-    echo '80 15  80 18' | brushwork monitor --decode -\n  \
-    brushwork monitor --connect /dev/ttyUSB0,family=motion-mind --pty /tmp/tap\n  \
-    brushwork monitor --family motion-mind --decode frames.txt\n\n\
-    With --pty or --tcp every byte is passed on unchanged, both ways. When that ends while the other program has motors \
-    running, they are stopped.\n\
-    --decode reads bytes in hexadecimal, with or without 0x, separated by spaces or commas; # starts a comment. An empty \
-    line is a pause.")]
+#[command(after_help = examples::after("monitor", &[
+    "monitor --connect {sim} --for 2",
+    "monitor --connect /dev/ttyACM0 --pty /tmp/tap     (another program opens /tmp/tap)",
+    "monitor --connect /dev/ttyUSB0,baud=115200 --tcp 127.0.0.1:7001 --json",
+    "echo '80 15  80 18' | monitor --decode -",
+], NOTE))]
 pub struct MonitorArgs {
     /// The controller.
     #[command(flatten)]

@@ -21,7 +21,7 @@ pub fn run(args: &MonitorArgs, path: &Path, out: &mut Output) -> Result<(), Exit
     let lines = parse(&text).map_err(|error| failed(error.to_string()))?;
     let mut decoder = follower(args)?;
     for record in decode(decoder.as_mut(), &lines) {
-        print(args, &record, out)?;
+        print(args.json, &record, out)?;
     }
     Ok(())
 }

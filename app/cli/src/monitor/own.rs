@@ -21,7 +21,7 @@ pub fn run(args: &MonitorArgs, out: &mut Output, interrupt: &Interrupt) -> Resul
                 let at = traffic.at.saturating_sub(*first.get_or_insert(traffic.at));
                 let direction =
                     if traffic.sent { Direction::ToController } else { Direction::FromController };
-                print(args, &Record { at: Some(at), direction, bytes: traffic.bytes, text }, out)?;
+                print(args.json, &Record { at: Some(at), direction, bytes: traffic.bytes, text }, out)?;
             }
             Some(Event::Connected(identity)) => say(format!(
                 "{} at {} on {} ({})",

@@ -5,7 +5,6 @@ use std::time::Duration;
 use brushwork_values::hex;
 use serde_json::json;
 
-use super::args::MonitorArgs;
 use crate::output::{Output, OutputError};
 
 /// Room for the bytes in a line of text; more push the meaning to the right.
@@ -38,8 +37,8 @@ impl Record {
 }
 
 /// Prints a record as the arguments ask for it.
-pub fn print(args: &MonitorArgs, record: &Record, out: &mut Output) -> Result<(), OutputError> {
-    if args.json {
+pub fn print(as_json: bool, record: &Record, out: &mut Output) -> Result<(), OutputError> {
+    if as_json {
         return out.json_line(&json!({
             "time_s": record.at.map(|at| at.as_secs_f64()),
             "direction": record.direction.key(),

@@ -106,7 +106,7 @@ fn show(
             return Err(Exit::Interrupted);
         }
         match received.recv_timeout(WATCH) {
-            Ok(News::Record(record)) => print(args, &record, out)?,
+            Ok(News::Record(record)) => print(args.json, &record, out)?,
             Ok(News::LeftOut(count)) => say(format!("{count} lines were left out: they came too fast.")),
             Ok(News::ClientLeft) => say("The other program closed the port."),
             Err(RecvTimeoutError::Timeout) => {}

@@ -6,14 +6,16 @@ mod terminal;
 
 use brushwork_link::device::Identity;
 use brushwork_link::family::{FamilyRef, Model};
+use brushwork_motion_mind::sim_spec::MODEL;
 use brushwork_motion_mind_client::{MOTION_MIND, MotionMindFacts, taken};
 use brushwork_motion_mind_wire::{reference, reference_entry, reference_page};
 use clap::{Arg, ArgMatches, Args as _, Command};
 
 use crate::exit::Exit;
-use crate::family::{Family, Page, Simulated, SimulatedModel};
+use crate::family::{Examples, Family, Page, Simulated, SimulatedModel};
 use crate::monitor::follower::Follower;
 use crate::tool::Tool;
+use brushwork_core::settings::Act;
 use brushwork_core::words::capital;
 use decoder::Decoder;
 use sim::Switches;
@@ -30,6 +32,20 @@ impl Family for MotionMindCommands {
     fn commands(&self) -> Vec<Tool> {
         let about = "Send commands to a Motion Mind as they are typed";
         vec![Tool::new("terminal", 21, about, terminal::run)]
+    }
+
+    fn examples(&self) -> Examples {
+        Examples {
+            model: MODEL,
+            options: "[,mode=4,protocol=ascii]",
+            lines: &[
+                "drive --connect /dev/ttyUSB0,family=motion-mind --by -500 --for 2",
+                "sim --model motion-mind-3 --mode 4 --protocol ascii --address 1,2 --pty /tmp/mm",
+                "protocol --family motion-mind WRITE_STORE PTERM",
+                "monitor --connect /dev/ttyUSB0,family=motion-mind --pty /tmp/tap",
+                "monitor --family motion-mind --decode frames.txt",
+            ],
+        }
     }
 
     fn simulated(&self, _model: &Model) -> SimulatedModel {
@@ -70,6 +86,21 @@ impl Family for MotionMindCommands {
 
     fn follower(&self, _generation: Option<u8>) -> Box<dyn Follower> {
         Box::new(Decoder::default())
+    }
+
+    fn note_of(&self, act: &Act) -> Option<&'static str> {
+        match act {
+            Act::Save => Some(
+                "Each write to EEPROM stops the motor for up to 40 ms; in mode 3 it does not start again by itself.",
+            ),
+            Act::Reload => Some(
+                "A Motion Mind starts anew for it: its motor stops, and its position is 0 unless POSPWRUP is set.",
+            ),
+            Act::RestoreDefaults => Some(
+                "RESTORE writes RAM and EEPROM and stops the motor; the unit answers at address 1 afterwards.",
+            ),
+            Act::Read | Act::ReadKeys(_) | Act::Write { .. } => None,
+        }
     }
 
     fn set_up(&self, identity: &Identity) -> Option<String> {

@@ -6,6 +6,7 @@ use std::str::FromStr;
 use clap::{Args, Subcommand};
 
 use super::side_name::SideName;
+use crate::examples;
 use crate::{ConnectArgs, Replace};
 
 /// Arguments of `brushwork settings`.
@@ -159,10 +160,10 @@ pub struct ReadArgs {
 
 /// Arguments of `brushwork settings write`.
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  \
-    brushwork settings write --connect sim:mcp266 motor1.velocity.p=2.5 --yes\n  \
-    brushwork settings write --connect /dev/ttyACM0 limits.main_battery.max_volts=28V motor1.velocity.qpps=12000 --dry-run\n\n\
-    `brushwork settings read` shows the keys, `brushwork settings reference` explains them.")]
+#[command(after_help = examples::after("settings", &[
+    "settings write --connect {sim} motor1.velocity.p=2.5 --yes",
+    "settings write --connect /dev/ttyACM0 limits.main_battery.max_volts=28V motor1.velocity.qpps=12000 --dry-run",
+], "`brushwork settings read` shows the keys, `brushwork settings reference` explains them."))]
 pub struct WriteArgs {
     /// The controller.
     #[command(flatten)]

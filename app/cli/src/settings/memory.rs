@@ -9,7 +9,7 @@ use super::args::MemoryArgs;
 use super::ask;
 use super::controller::Controller;
 use super::review::{Change, change_lines, changes, tell};
-use crate::{Exit, Interrupt, Output, OutputError, say};
+use crate::{Exit, Interrupt, Output, OutputError, family, say};
 use brushwork_core::keep::{Store, UnitId, WearLevel};
 use brushwork_core::settings::{Act, Done, counted, known_defaults, merged};
 
@@ -34,10 +34,7 @@ pub fn save(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Resul
         )?,
     }
     tell_wear(&controller.unit);
-    tell_stop(
-        &ram.table,
-        "Each write to EEPROM stops the motor for up to 40 ms; in mode 3 it does not start again by itself.",
-    );
+    tell_note(&ram.table, &Act::Save);
     let question = format!("Save all settings of {} to EEPROM?", controller.describe());
     ask::agreed(&question, args.yes, &controller)?;
     let (report, exit) = save_to_eeprom(&controller, &ram.table)?;
@@ -87,10 +84,7 @@ pub fn defaults(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> R
     let ram = controller.read()?;
     let list = changes(&ram.table, &ram.image, &known_defaults(&ram.table, &ram.image));
     show(args, out, "What would change, as far as the factory defaults are known:", &list, AT_DEFAULT)?;
-    tell_stop(
-        &ram.table,
-        "RESTORE writes RAM and EEPROM and stops the motor; the unit answers at address 1 afterwards.",
-    );
+    tell_note(&ram.table, &Act::RestoreDefaults);
     let question = format!("Restore the factory defaults of {}?", controller.describe());
     ask::agreed(&question, args.yes, &controller)?;
     let options = controller.write_options();
@@ -156,10 +150,7 @@ pub fn reload(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Res
         }
         None => say("What EEPROM holds is not known. What was written and not saved is lost."),
     }
-    tell_stop(
-        &ram.table,
-        "A Motion Mind starts anew for it: its motor stops, and its position is 0 unless POSPWRUP is set.",
-    );
+    tell_note(&ram.table, &Act::Reload);
     let question = format!("Load the EEPROM of {} over its RAM?", controller.describe());
     ask::agreed(&question, args.yes, &controller)?;
     let options = controller.write_options();
@@ -180,10 +171,10 @@ pub fn reload(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Res
     Ok(finished.broken.unwrap_or(if report.is_whole() { Exit::Done } else { Exit::NotTaken }))
 }
 
-/// Says what an act on the memory of a Motion Mind does to its motor.
-fn tell_stop(table: &SettingsTable, what: &str) {
-    if table.subject().family().settings().restores_eeprom() {
-        say(format!("Note: {what}"));
+/// Says what an act on the memory of the table's unit does to its motor.
+fn tell_note(table: &SettingsTable, act: &Act) {
+    if let Some(note) = family::of(table.subject().model.family).note_of(act) {
+        say(format!("Note: {note}"));
     }
 }
 
