@@ -91,13 +91,15 @@ impl VirtualLink {
 impl VirtualLink<SimulatedLine> {
     /// A loop on the simulated units of a family, at the stream that they are reached by.
     pub fn to_simulated(started: Started, options: DeviceOptions) -> Self {
-        Self::made(
-            SimulatedLine::new(started.machine),
-            started.index,
-            Vec::new(),
-            started.seed,
-            |line, clock| DeviceLoop::new(line, clock, options),
-        )
+        Self::over_stream(started, options, Vec::new())
+    }
+
+    /// The same behind a line with faults.
+    pub fn over_stream(started: Started, options: DeviceOptions, faults: Vec<Fault>) -> Self {
+        let bus = SimulatedLine::new(started.machine);
+        Self::made(bus, started.index, faults, started.seed, |line, clock| {
+            DeviceLoop::new(line, clock, options)
+        })
     }
 }
 

@@ -14,6 +14,7 @@ use super::client::{arm, ask};
 use super::response::Response;
 use super::status::line_of;
 use super::{Client, Exit, Interrupt, Output, OutputError, Readings, family, say, stop};
+use brushwork_core::motion::check::MotionCheck;
 
 /// Time between two sweeps of the signals.
 const SWEEP_INTERVAL: Duration = Duration::from_millis(20);
@@ -111,6 +112,7 @@ fn keep_driving(
     let start = Instant::now();
     let mut next_print = start;
     let mut readings = Readings::default();
+    let mut check = MotionCheck::default();
     while start.elapsed() < args.duration {
         client.device().renew();
         match client.next_event(interrupt)? {
@@ -120,6 +122,13 @@ fn keep_driving(
                 return Err(Exit::Refused.saying(failure));
             }
             Some(event) => {
+                if let Some(finding) = check.take(&event) {
+                    let is_fault = finding.is_fault();
+                    say(finding.sentence);
+                    if is_fault {
+                        return Err(Exit::Refused);
+                    }
+                }
                 if let Event::Sample(sample) = &event {
                     responses.iter_mut().for_each(|response| response.take(sample, commanded_at));
                 }

@@ -11,8 +11,8 @@ pub const HELP: &str = "Exit codes:\n  \
     1  something else failed (a file, a benchmark, an internal error)\n  \
     2  the command line could not be understood\n  \
     3  no controller could be reached, or the link was lost\n  \
-    4  the controller or a safety rule refused or ended it; drive: the stop was not confirmed,\n     \
-    or the motor is not held, since its loop was left off\n  \
+    4  the controller or a safety rule refused or ended it; drive: a motor did not do what it was told,\n     \
+    the stop was not confirmed, or the motor is not held, since its loop was left off\n  \
     5  settings: a value or a profile was refused, or something did not take\n  \
     6  settings diff: there are differences\n  \
     8  tune: gains were found, with warnings to read\n  \

@@ -16,6 +16,7 @@ mod foreign_clients;
 mod killed_clients;
 mod mcl;
 mod monitor_command;
+mod motion_check;
 mod motion_mind;
 mod motion_mind_drivers;
 mod motion_mind_foreign;

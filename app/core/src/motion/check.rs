@@ -615,7 +615,7 @@ mod tests {
         };
         assert_eq!(found(&mut driven(to), 20, done), []);
         let swings = |ms: u64| {
-            let percent = if ms / 100 % 2 == 0 { 80.0 } else { -80.0 };
+            let percent = if (ms / 100).is_multiple_of(2) { 80.0 } else { -80.0 };
             vec![(Channel::M1_PWM, percent), (Channel::M1_POSITION, (ms % 200) as f64)]
         };
         let speed = DriveCommand::Speed { speed_counts_per_s: 3000, accel_counts_per_s2: None };

@@ -16,6 +16,7 @@ use super::indicators::Indicators;
 use super::message::Gravity;
 use super::readings::Readings;
 use crate::family::{self, Family};
+use brushwork_core::motion::check::MotionCheck;
 use brushwork_core::stop::{Matter, matters};
 
 /// Whether motors may be moved.
@@ -69,6 +70,8 @@ pub struct LinkView {
     /// How far the search for units is, while there is one.
     pub searching: Option<Search>,
     pub arming: Arming,
+    /// Whether motors do what they are told.
+    motion: MotionCheck,
     /// Set when the link was lost while armed: after how much silence the controller stops by itself.
     lost_while_armed: Option<Option<Duration>>,
     /// Why arming was refused the last time.
@@ -116,6 +119,16 @@ impl LinkView {
 
     /// Takes over an event.
     pub fn take(&mut self, event: Event) -> Vec<Effect> {
+        let finding = self.motion.take(&event);
+        let mut effects = self.heard(event);
+        effects.extend(finding.map(|finding| {
+            let gravity = if finding.is_fault() { Gravity::Error } else { Gravity::Warning };
+            Effect::Say(gravity, finding.sentence)
+        }));
+        effects
+    }
+
+    fn heard(&mut self, event: Event) -> Vec<Effect> {
         match event {
             Event::Searching { done, of, what } => {
                 self.searching = Some(Search { done, of, what });

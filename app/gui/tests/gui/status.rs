@@ -158,3 +158,19 @@ fn the_home_indicator_of_an_mcp_follows_the_action_of_its_pin() {
         "the word has no bit for it"
     );
 }
+
+#[test]
+fn a_motor_that_gets_nothing_though_no_status_says_why_is_told_in_the_message_line() {
+    let mut bench = Bench::new();
+    bench.connect();
+    bench.arm();
+    bench.set_duty(Motor::M1, "25");
+    bench.pass_ms(2500);
+    let told =
+        |bench: &mut Bench| bench.said().iter().filter(|text| text.contains("M1 gets no output")).count();
+    assert_eq!(told(&mut bench), 0);
+    bench.act(&WorldAction::SetUnitFault { fault: UnitFault::M1Driver, on: true });
+    bench.pass_ms(3000);
+    assert_eq!(told(&mut bench), 1, "{:?}", bench.said());
+    assert!(bench.sees_part("M1 gets no output, though a duty of 25.0 % was commanded and confirmed."));
+}
