@@ -40,6 +40,8 @@ messages! {
         NotAtRest { setpoint: String, seconds: u64 } "a motor does not come to rest at {setpoint} within {seconds} s",
         NotReached { motor: Motor, counts: f64, seconds: u64 } "{motor} did not reach {counts:.0} counts within {seconds} s",
         GoesAway { motor: Motor, counts: f64 } "{motor} goes away from {counts:.0} counts",
+        SlowReading { rate: String, took_ms: u128, longest_ms: u128 } "this line{rate} is too slow or too late for a run: one reading of the motor takes {took_ms} ms, and a run needs one every {longest_ms} ms",
+        LateForRun { rate: String, timeout_ms: u128, needed_ms: u128 } "this line{rate} is too slow or too late for a run: a run has the controller stop the motor after {timeout_ms} ms of silence, and a lost reply means {needed_ms} ms on this line",
         NoLoader "no USB device calls itself a loader (…ULDR)",
         TwoLoaders { first: String, second: String } "two loaders are there, {first} and {second}; unplug the one that is not meant",
     }
@@ -63,6 +65,7 @@ messages! {
         SeeLimits "A limit of current, voltage or temperature holds it back: see the indicators and General Settings",
         TuneLoop "Tune the position loop, or widen its deadzone",
         GoFaster "Go faster, or choose points that are nearer",
+        QuickerLine "Connect by USB or at 115200 bit/s, with no radio and no network on the way, or set the gains by hand",
         TurnEncoder "Its encoder counts the wrong way: change round the two motor leads, or the encoder's A and B",
     }
 }

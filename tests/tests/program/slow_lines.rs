@@ -5,13 +5,18 @@ use brushwork_tests::said::Said;
 use std::fmt::Debug;
 use std::time::Duration;
 
+use brushwork_core::keep::TrialKeeper;
 use brushwork_core::session::line::SimulatedLine;
+use brushwork_core::tune::law::{Report, Request as Tuning, Setup};
+use brushwork_core::tune::live::Live;
+use brushwork_core::tune::sequence::NOT_ARMED;
+use brushwork_core::tune::{Slot, Target, leaves_off, prepare, restore, run, take};
 use brushwork_family::simulator;
 use brushwork_link::device::{
     ArmScope, DeviceOptions, Drive, DriveCommand, Event, Identity, Job, JobEnding, Request,
 };
-use brushwork_link::settings::read_all;
-use brushwork_link::{FamilyChoice, Stream};
+use brushwork_link::settings::{Ending, Entry, Keeper, read_all};
+use brushwork_link::{Failure, FamilyChoice, Stream};
 use brushwork_mcp_client::MCP;
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_mcp_sim::settings::Settings;
@@ -21,6 +26,9 @@ use brushwork_plant::faults::{Direction, Fault, FaultEffect};
 use brushwork_plant::machine::{Machine, StreamIndex};
 use brushwork_plant::pacing::byte_time;
 use brushwork_tests::virtual_link::VirtualLink;
+use brushwork_tuning::axis::EncoderClass;
+use brushwork_tuning::report::Verdict;
+use brushwork_tuning::tune::Method;
 use brushwork_values::Motor;
 
 const RATES: [u32; 7] = [2_400, 9_600, 19_200, 38_400, 57_600, 115_200, 460_800];
@@ -250,4 +258,130 @@ fn a_motion_mind_is_found_read_driven_and_stopped_on_every_line() {
             println!("{case:?}: found in {found_s:.1} s, settings in {settings_s:.1} s");
         }
     }
+}
+
+/// Both ends of rate, firmware and lateness, and between them the lines where tuning becomes a refusal.
+fn corners() -> impl Iterator<Item = (Case, bool)> {
+    let ends = [(2_400, 0, false), (2_400, 400, false), (460_800, 0, true), (460_800, 400, false)];
+    let ends = ends.map(|(rate_bps, latency_ms, is_tuned)| (rate_bps, latency_ms, 16, is_tuned));
+    let between = [
+        (9_600, 0, 0, false),
+        (19_200, 0, 0, true),
+        (38_400, 0, 0, true),
+        (38_400, 20, 0, false),
+        (115_200, 0, 16, true),
+        (115_200, 20, 0, true),
+        (115_200, 30, 0, false),
+        (115_200, 150, 0, false),
+    ];
+    ends.into_iter().chain(between).flat_map(|(rate_bps, latency_ms, timer_ms, is_tuned)| {
+        [Generation::Gen1, Generation::Gen4]
+            .map(|generation| (Case { rate_bps, generation, latency_ms, timer_ms }, is_tuned))
+    })
+}
+
+/// Prepares a run, carries it out and puts everything back; the report, or why there is none.
+fn tune<M: Machine + 'static>(
+    link: &mut VirtualLink<M>,
+    unit: &Identity,
+    target: Target,
+    method: Method,
+) -> Result<Report, String> {
+    let minutes = |minutes: u64| Duration::from_secs(60 * minutes);
+    let subject = unit.subject().expect("the model is known");
+    let keeper = TrialKeeper::new(Box::new(Forgetful));
+    let setup: Slot<Setup> = Slot::default();
+    match link.finish(prepare(target, subject, &setup, &keeper), minutes(10)) {
+        Some(JobEnding::Done(())) => {}
+        Some(JobEnding::Failed(failure)) => return Err(failure.to_string()),
+        other => panic!("{other:?}"),
+    }
+    let before = take(&setup).expect("it was read");
+    let target = Target { encoder: Some(before.encoder), ..target };
+    let found: Slot<Report> = Slot::default();
+    let armed = arm(link);
+    if armed.is_ok() {
+        let request = Tuning { method, ..Tuning::default() };
+        link.finish(run(target, request, &found, &Live::default()), minutes(10));
+    }
+    let report = take(&found);
+    let leaves_off = leaves_off(report.as_ref(), None);
+    link.finish(restore(target, before, report.as_ref(), leaves_off, &keeper), minutes(5));
+    armed.map(|()| report.expect("a run leaves its report")).map_err(|why| format!("{why} {NOT_ARMED}"))
+}
+
+/// What a run keeps on this computer is not looked at here.
+struct Forgetful;
+
+impl Keeper for Forgetful {
+    fn begin(&mut self, _entry: Entry) {}
+
+    fn begun(&mut self) -> Option<Result<(), Failure>> {
+        Some(Ok(()))
+    }
+
+    fn end(&mut self, _ending: Ending) {}
+}
+
+/// Whether a refusal says what the line takes, and what would do.
+fn names_the_line(why: &str) -> bool {
+    ["this line", " ms", "USB"].iter().all(|word| why.contains(word)) && !why.contains("computer")
+}
+
+#[test]
+fn a_motor_is_tuned_over_a_line_or_the_line_is_refused_for_what_it_takes() {
+    let mut wrong = Vec::new();
+    for (case, is_tuned) in corners() {
+        let mut link = case.link(1000);
+        let unit = case.connect(&mut link);
+        let encoder = Some(EncoderClass::Quadrature);
+        let target = Target { motor: Motor::M1, encoder, stream: Some(Stream::Rs232) };
+        let begun = link.now();
+        let came = tune(&mut link, &unit, target, Method::Velocity);
+        let took_s = (link.now() - begun).as_secs_f64();
+        let timeout_ms =
+            link.bus(|bus| bus.controllers()[0].settings().streams[StreamIndex::Uart0.index()].timeout_ms);
+        let is_right = match &came {
+            Ok(report) => report.verdict != Verdict::Refused,
+            Err(why) => names_the_line(why),
+        };
+        let came = came.map(|report| (report.verdict, report.causes));
+        println!("{case:?}: {came:?} in {took_s:.1} s");
+        if !is_right || came.is_ok() != is_tuned || timeout_ms != 1000 {
+            wrong.push(format!("{case:?}: {came:?}, time-out {timeout_ms} ms"));
+        }
+    }
+    assert_eq!(wrong, [""; 0]);
+}
+
+#[test]
+fn a_motion_mind_is_tuned_over_a_line_or_the_line_is_refused_for_what_it_takes() {
+    brushwork::install();
+    let mut wrong = Vec::new();
+    for (protocol, baud) in [("binary", 19_200), ("binary", 9_600), ("ascii", 9_600)] {
+        for latency_ms in [0, 400] {
+            let case = (protocol, baud, latency_ms);
+            let text = format!("motion-mind-3,mode=4,protocol={protocol},baud={baud}");
+            let simulator = simulator::asked_for(&text).expect("it is one");
+            let bus = SimulatedLine::new(simulator.start(&text).expect("the presets make a motor").machine);
+            let options = DeviceOptions { family: FamilyChoice::of(MOTION_MIND), ..DeviceOptions::default() };
+            let mut link = VirtualLink::over(bus, options, vec![late(latency_ms)], 1);
+            let is_selected = |event: &Event| matches!(event, Event::Selected { .. });
+            assert!(run_until(&mut link, 120, is_selected), "{case:?}: {:?}", link.events);
+            let unit = link.events.iter().find_map(|(_, event)| match event {
+                Event::Connected(unit) => Some(unit.clone()),
+                _ => None,
+            });
+            let target = Target { motor: Motor::M1, encoder: None, stream: None };
+            let came = tune(&mut link, &unit.expect("it was selected"), target, Method::Pid);
+            let is_right = match &came {
+                Ok(report) => report.verdict != Verdict::Refused && latency_ms == 0,
+                Err(why) => names_the_line(why),
+            };
+            let came = came.map(|report| (report.verdict, report.causes));
+            println!("{case:?}: {came:?}");
+            wrong.extend((!is_right).then(|| format!("{case:?}: {came:?}")));
+        }
+    }
+    assert_eq!(wrong, [""; 0]);
 }

@@ -111,8 +111,8 @@ fn session(
             let text = format!("Internal error while tuning: {word}. The motors were stopped.");
             Some(Exit::Failed.saying(text))
         }
-        // What ended it was said when it came: Ctrl-C, or reasons not to arm.
-        Some(Why::Ended(_)) => Some(if stopped { Exit::Interrupted } else { Exit::Refused }),
+        Some(Why::Ended(_)) if stopped => Some(Exit::Interrupted),
+        Some(Why::Ended(why)) => Some(Exit::Refused.saying(format!("The motor was not tuned: {why}."))),
     };
     if ended.owed.is_some() {
         say(

@@ -10,15 +10,16 @@ pub mod law;
 pub mod live;
 pub mod sequence;
 
-use crate::messages::CoreActMessage;
+use crate::messages::{CoreActMessage, CoreCauseMessage, CoreRemedyMessage};
 use brushwork_family::messages::LoopActMessage;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use brushwork_family::tuned::{Tuned, failed, thrice};
+use brushwork_link::device::JobContext;
 use brushwork_link::settings::{Ending, begin_trial, end_act};
-use brushwork_link::{Job, SettingValue, Subject};
-use brushwork_tuning::axis::EncoderClass;
+use brushwork_link::{Failure, Job, SettingValue, Subject};
+use brushwork_tuning::axis::{EncoderClass, Want};
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::experiment_guard::RUN_STREAM_TIMEOUT_MS;
 use brushwork_tuning::report::Verdict;
@@ -31,6 +32,13 @@ pub use brushwork_family::{Restored, Target};
 use crate::keep::TrialKeeper;
 use law::{Families, Report, Request, Setup, Trial, TrialRequest};
 use live::Live;
+
+/// The longest reading, all that a poll may ask for, with which a run can tell what a motor does: see `slow_lines` among the tests for what
+/// becomes of runs at each rate and lateness.
+const LONGEST_READING: Duration = Duration::from_millis(90);
+/// Readings by which a line is judged, and what each asks for.
+const READINGS: usize = 3;
+const READING: Want = Want { duty: true, current: true, volts: false };
 
 /// What a trial of gains may take.
 const TRIAL_LIMIT: Duration = Duration::from_secs(120);
@@ -65,11 +73,54 @@ pub fn encoder(settings: &dyn Fn(&str) -> Option<SettingValue>, motor: Motor) ->
     Families::encoder(settings, motor)
 }
 
+/// The rate of a line for a sentence: " at 9600 bit/s". Ten bits a byte, whose time is in whole ns.
+fn rate_of(context: &JobContext<'_>) -> String {
+    let rate = context.byte_time().map(|time| (0.1 / time.as_secs_f64()).round() * 100.0);
+    rate.filter(|rate| rate.is_finite()).map_or_else(String::new, |rate| format!(" at {rate:.0} bit/s"))
+}
+
+/// Refuses a line over which a run would not see in time what the motor does, before anything is asked or changed. It is judged by the
+/// quickest of a few readings at rest: a busy computer makes some of them longer, a slow line all.
+fn check_line(context: &mut JobContext<'_>, target: Target, place: &str) -> Result<(), Failure> {
+    context.set_polling(false);
+    let mut axis = Families::axis(context, target, true);
+    let mut quickest = Duration::MAX;
+    for _ in 0..READINGS {
+        let begun_at = axis.now();
+        thrice(|| axis.sample(READING)).map_err(|error| failed(LoopActMessage::Read, place, &error))?;
+        quickest = quickest.min(axis.now().saturating_sub(begun_at));
+    }
+    drop(axis);
+    context.set_polling(true);
+    if quickest <= LONGEST_READING {
+        return Ok(());
+    }
+    let cause = CoreCauseMessage::SlowReading {
+        rate: rate_of(context),
+        took_ms: quickest.as_millis(),
+        longest_ms: LONGEST_READING.as_millis(),
+    };
+    Err(Failure::new(CoreActMessage::Tune, place, cause, CoreRemedyMessage::QuickerLine))
+}
+
+/// Refuses a line on which the time-out of a run would stop the motor at each reply that is lost.
+fn check_timeout(context: &JobContext<'_>, place: &str) -> Result<(), Failure> {
+    let timeout = Duration::from_millis(RUN_STREAM_TIMEOUT_MS.into());
+    let Some(needed) = context.needed_timeout().filter(|needed| *needed > timeout) else { return Ok(()) };
+    let cause = CoreCauseMessage::LateForRun {
+        rate: rate_of(context),
+        timeout_ms: timeout.as_millis(),
+        needed_ms: needed.as_millis(),
+    };
+    Err(Failure::new(CoreActMessage::Tune, place, cause, CoreRemedyMessage::QuickerLine))
+}
+
 /// The job before: keeps backup and journal, reads what is put back afterwards, and shortens the time-out. It moves nothing.
 pub fn prepare(target: Target, subject: Subject, found: &Slot<Setup>, keeper: &TrialKeeper) -> Job<()> {
     let (found, keeper) = (Arc::clone(found), keeper.clone());
     Job::new(CoreActMessage::GetReady, PREPARE_LIMIT, move |context| {
         let place = context.describe();
+        check_line(context, target, &place)?;
         let is_tried = |key: &str| Families::is_tried(target.motor, key);
         let held = begin_trial(context, subject, &is_tried, &mut **keeper.lock())?;
         let encoder = target.encoder.or_else(|| encoder(&|key| held.image.get(key), target.motor));
@@ -81,6 +132,9 @@ pub fn prepare(target: Target, subject: Subject, found: &Slot<Setup>, keeper: &T
         if setup.stream_timeout_ms.is_some() {
             thrice(|| axis.set_stream_timeout(RUN_STREAM_TIMEOUT_MS))
                 .map_err(|error| failed(LoopActMessage::SetTimeout, &place, &error))?;
+            drop(axis);
+            // By now all settings were read, so that this line has shown how late it is.
+            check_timeout(context, &place)?;
         }
         Ok(())
     })

@@ -16,6 +16,10 @@ use super::live::Live;
 use super::{self as jobs, Restored, Slot, Target, take};
 use crate::keep::TrialKeeper;
 
+/// Why a run ends that may not move the motor, behind the reasons that arming has given: its own time-out may be one.
+pub const NOT_ARMED: &str = "it could not be armed again with the time-out of a run, 200 ms of silence; where that is too short for the line, connect \
+                             by USB or at 115200 bit/s, with no radio and no network on the way";
+
 /// How often putting the gains back is asked for again when something breaks into it.
 const MOST_RESTORES: u8 = 4;
 
@@ -241,7 +245,7 @@ impl Sequence {
             match armed {
                 Armed::Yes => self.go_to(Stage::Running),
                 Armed::Refused if matches!(self.asked, Asked::Arming) => {
-                    self.abort("the screen could not be armed again");
+                    self.abort(NOT_ARMED);
                 }
                 Armed::Open | Armed::Refused => {}
             }

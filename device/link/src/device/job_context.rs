@@ -44,6 +44,9 @@ pub trait JobHost: Wire {
     /// How long a byte takes on the wire, where that is known.
     fn byte_time(&self) -> Option<Duration>;
 
+    /// What the controller's own time-out has to be at least on this line, where that is late.
+    fn needed_timeout(&self) -> Option<Duration>;
+
     /// Shows the window a reading that the job made itself.
     fn sample(&mut self, sample: Sample);
 

@@ -418,6 +418,13 @@ impl Exchange {
         self.longest_turnaround() > self.transport.latency()
     }
 
+    /// What a controller's own time-out has to be at least on a line that is late: it outlasts a reply that is lost, the wait for what may still
+    /// come, and the reply that is asked for in its place, or each loss stops the motors.
+    #[must_use]
+    pub fn needed_timeout(&self) -> Option<Duration> {
+        self.is_late().then(|| 3 * self.longest_turnaround())
+    }
+
     /// Learns from a reply how long the line takes beyond the controller's own work; what it works on for longer tells nothing. A reply to a request that was sent again may be
     /// that to the first (Karn's rule, RFC 6298, section 3): it counts from there unless it is as quick as others were.
     fn learn(&mut self, request: &Outgoing<'_>, span: Span, first_at: Duration) {

@@ -294,6 +294,10 @@ impl JobHost for Host<'_> {
         self.core.exchange.byte_time()
     }
 
+    fn needed_timeout(&self) -> Option<Duration> {
+        self.core.exchange.needed_timeout()
+    }
+
     fn sample(&mut self, sample: Sample) {
         self.core.send_sample(sample);
     }

@@ -130,13 +130,12 @@ fn of_streams<const L: u8>(streams: &Read<L>, stream: Option<Stream>) -> Result<
     longest.ok_or_else(unreadable)
 }
 
-/// On a line that is late the time-out must outlast a reply that is lost, the wait for what may still come, and the reply that is asked for in its
-/// place, or each loss stops the motors.
+/// On a line that is late the time-out must outlast a reply that is lost.
 fn object_to_lateness(exchange: &Exchange, timeout: Duration) -> Option<Objection> {
     let latest = exchange.longest_turnaround();
-    (exchange.is_late() && timeout < 3 * latest).then(|| {
+    exchange.needed_timeout().filter(|needed| timeout < *needed).map(|needed| {
         // To the next 100 ms, in which RoboClaws count.
-        let enough_ms = (3 * latest).as_millis().next_multiple_of(100);
+        let enough_ms = needed.as_millis().next_multiple_of(100);
         object(
             McpCauseMessage::LineIsLate { latest_ms: latest.as_millis(), timeout_ms: timeout.as_millis() },
             McpRemedyMessage::LengthenTimeout { enough_ms },
