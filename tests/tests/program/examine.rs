@@ -347,7 +347,7 @@ fn the_command_reads_where_nobody_can_be_asked_and_the_served_imitation_calls_it
     assert_eq!(first.status.code(), Some(0), "{first:?}");
     let found =
         Examination::parse(&std::fs::read_to_string(&json).expect("it was written")).expect("a report");
-    let sentence = |key: &str| found.answer(key).expect("a question").sentence.clone();
+    let sentence = |key: &str| found.answer(key).expect("a question").worded.clone();
     assert_eq!(found.answer("guessed_reads").map(|answer| answer.state), Some(State::Answered));
     for key in ["longer_payload", "loop_rate", "save_restarts"] {
         assert!(sentence(key).contains("nobody could be asked") && sentence(key).contains("--yes"), "{key}");

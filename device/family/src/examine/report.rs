@@ -52,9 +52,9 @@ pub struct Unit {
     pub generation: u8,
     /// How it is spoken to.
     pub protocol: String,
-    /// What was odd when it was found.
-    #[serde(default)]
-    pub notes: Vec<String>,
+    /// What was odd when it was found, in the words in which it was written down.
+    #[serde(default, rename = "notes")]
+    pub oddities: Vec<String>,
 }
 
 /// The line to it, as far as it has shown itself.
@@ -119,8 +119,9 @@ pub struct Answer {
     /// What it was told from, where that is not the same each time; null where nothing is to be told.
     #[serde(default)]
     pub measured: Value,
-    /// The answer, or why there is none, in sentences.
-    pub sentence: String,
+    /// The answer, or why there is none, in the words in which it was written down: a file keeps them.
+    #[serde(rename = "sentence")]
+    pub worded: String,
 }
 
 /// What cannot be asked, and why.
@@ -160,7 +161,7 @@ impl Answer {
             state: State::NotAsked,
             value: Value::Null,
             measured: Value::Null,
-            sentence: OPEN.to_owned(),
+            worded: OPEN.to_owned(),
         }
     }
 }
@@ -170,7 +171,7 @@ impl Examination {
     #[must_use]
     pub fn of(identity: &Identity) -> Self {
         // The notes of a node hold the serial number of its unit, and nothing that is odd.
-        let notes = if identity.is_node() {
+        let oddities = if identity.is_node() {
             Vec::new()
         } else {
             identity.notes.iter().map(ToString::to_string).collect()
@@ -186,7 +187,7 @@ impl Examination {
                 firmware: identity.firmware.clone(),
                 generation: identity.generation.number(),
                 protocol: identity.protocol.to_owned(),
-                notes,
+                oddities,
             },
             line: Line::default(),
             commands: Vec::new(),
@@ -249,15 +250,15 @@ impl Examination {
 
     /// Says why the questions of a step were not asked of which nothing is said yet.
     pub fn not_asked(&mut self, step: &str, why: &str) {
-        let open = |answer: &&mut Answer| answer.step == step && answer.sentence == OPEN;
+        let open = |answer: &&mut Answer| answer.step == step && answer.worded == OPEN;
         for answer in self.answers.iter_mut().filter(open) {
-            why.clone_into(&mut answer.sentence);
+            why.clone_into(&mut answer.worded);
         }
     }
 
-    fn enter(&mut self, key: &str, state: State, value: Value, sentence: String) {
+    fn enter(&mut self, key: &str, state: State, value: Value, worded: String) {
         if let Some(answer) = self.answers.iter_mut().find(|answer| answer.key == key) {
-            *answer = Answer { state, value, sentence, ..answer.clone() };
+            *answer = Answer { state, value, worded, ..answer.clone() };
         }
     }
 
@@ -269,7 +270,7 @@ impl Examination {
         let commands = self.commands.iter().map(|found| CommandFound { quickest_ms, ..found.clone() });
         let answers = self.answers.iter().map(|answer| Answer {
             measured: Value::Null,
-            sentence: String::new(),
+            worded: String::new(),
             ..answer.clone()
         });
         Self {

@@ -20,7 +20,7 @@ impl Examination {
         row("Firmware", &format!("{} (generation {})", unit.firmware, unit.generation));
         row("Protocol", &unit.protocol);
         row("Line", &self.line_text());
-        for note in &unit.notes {
+        for note in &unit.oddities {
             row("Note", note);
         }
         for (title, state) in [
@@ -83,7 +83,7 @@ fn heading(text: &mut String, title: &str) {
 
 fn push_answer(text: &mut String, answer: &Answer) {
     push(text, &answer.question, INDENT);
-    push(text, &format!("{INDENT}{}", answer.sentence), INDENT);
+    push(text, &format!("{INDENT}{}", answer.worded), INDENT);
     if answer.state != State::NotAsked {
         push(text, &format!("{INDENT}Asked so: {}", answer.how), INDENT);
     }
