@@ -87,12 +87,14 @@ const SENTENCES: [&str; 9] = [
     "still_driven_by",
 ];
 
-/// A form of files that are read again, where a sentence is what stands in the file.
-const FILE: &str = "device/family/src/examine/report.rs";
+/// A form of files that are read again, where a sentence is what stands in the file; and what is still to become messages.
+const NOT_YET: [&str; 2] = ["device/family/src/examine/report.rs", "app/core/src/motion/check.rs"];
 
 #[test]
 fn what_people_read_is_no_bare_text() {
-    let is_typed = |path: &String| path != FILE && TYPED.iter().any(|krate| path.starts_with(krate));
+    let is_typed = |path: &String| {
+        TYPED.iter().any(|krate| path.starts_with(krate)) && !NOT_YET.contains(&path.as_str())
+    };
     let holds_text = |line: &str| {
         let field = line.trim_start().trim_start_matches("pub ").split_once(": ");
         field.is_some_and(|(name, kind)| SENTENCES.contains(&name) && kind.contains("String"))
