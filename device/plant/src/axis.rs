@@ -1,7 +1,8 @@
 //! One axis: the bridge's output in, motion, current and encoder counts out.
 //!
-//! PWM is averaged: a duty is a mean voltage of that share of the link voltage, and its ripple is not modelled. Locked antiphase
-//! and sign magnitude are the same in that mean, also at duty 0, where both short the winding in the mean, so the motor brakes.
+//! PWM is averaged: a duty is a mean voltage of that share of the link voltage. Locked antiphase and sign magnitude are the same
+//! in that mean, also at duty 0, where both short the winding in the mean, so the motor brakes. Of the ripple only its losses are
+//! modelled, and only where a PWM mode is set.
 
 use super::encoder::{Encoder, EncoderFaults, EncoderReading};
 use super::noise::Noise;
@@ -9,7 +10,7 @@ use super::params::{AxisParams, ParamsError, ShaftSide};
 use super::rigid::{Push, Rigid, Winding, effective_henries};
 use super::step::substeps;
 use super::two_mass::TwoMass;
-use crate::bridge::BridgeOutput;
+use crate::bridge::{BridgeOutput, PwmMode};
 use serde::Serialize;
 
 /// Assumed: drop of one body diode of the bridge. Two carry the current of a coasting motor.
@@ -66,6 +67,7 @@ pub struct Axis {
     shaft_locked: bool,
     lead_open: bool,
     leads_reversed: bool,
+    pwm: Option<PwmMode>,
     meter: Meter,
 }
 
@@ -106,6 +108,7 @@ impl Axis {
             shaft_locked: false,
             lead_open: false,
             leads_reversed: false,
+            pwm: None,
             meter: Meter::default(),
         })
     }
@@ -205,6 +208,11 @@ impl Axis {
         self.leads_reversed = reversed;
     }
 
+    /// Sets how the bridge makes its mean voltage. Without a mode its current has no ripple.
+    pub fn set_pwm_mode(&mut self, mode: PwmMode) {
+        self.pwm = Some(mode);
+    }
+
     /// Current through the bridge at this moment, without noise.
     pub(crate) fn bridge_amps(&self) -> f64 {
         self.polarity() * self.mechanics.amps()
@@ -245,7 +253,7 @@ impl Axis {
                 let duty = self.winding_duty(duty);
                 let volts = duty * bus_volts;
                 let coulombs = self.mechanics.step(self.push(Winding::Driven { volts }, 0.0), step_s);
-                (coulombs, duty * coulombs)
+                (coulombs, duty * coulombs + self.ripple(duty, bus_volts, step_s))
             }
             BridgeOutput::Brake => {
                 let coulombs = self.mechanics.step(self.push(Winding::Driven { volts: 0.0 }, 0.0), step_s);
@@ -261,6 +269,15 @@ impl Axis {
         self.meter.seconds += step_s;
         self.meter.heat_amps_squared_seconds += motor_coulombs * motor_coulombs / step_s;
         bus_coulombs
+    }
+
+    /// What the ripple of the PWM takes from the link over a step, in coulombs; its heat goes to the board.
+    fn ripple(&mut self, duty: f64, bus_volts: f64, step_s: f64) -> f64 {
+        let Some(pwm) = self.pwm.filter(|_| bus_volts > 0.0) else { return 0.0 };
+        let ohms = self.params.motor.armature_ohms;
+        let squared = pwm.ripple_amps_squared(duty, bus_volts, ohms, effective_henries(&self.params));
+        self.meter.heat_amps_squared_seconds += squared * step_s;
+        squared * ohms / bus_volts * step_s
     }
 
     /// The integral of the squared current since the last call, in ampere squared seconds.

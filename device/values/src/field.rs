@@ -174,6 +174,14 @@ impl Field {
         self
     }
 
+    /// Whether the sources give a meaning to a raw number: it is the field's constant, lies in its range and, where values are
+    /// named, is one of them.
+    pub fn allows(&self, raw: i64) -> bool {
+        self.fixed.is_none_or(|fixed| raw == fixed)
+            && self.raw_range.is_none_or(|(low, high)| (low..=high).contains(&raw))
+            && (self.codes.is_empty() || self.codes.iter().any(|code| code.raw == raw))
+    }
+
     /// The physical value of a raw one, in [`Field::unit`](field@Field::unit).
     pub fn physical(&self, raw: i64) -> f64 {
         raw as f64 * self.scale

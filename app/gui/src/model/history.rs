@@ -202,6 +202,7 @@ impl History {
             }
             // What is asked, measured and answered all the time is no moment to remember.
             Event::Searching { .. }
+            | Event::Moved { .. }
             | Event::Selected { .. }
             | Event::Sample(_)
             | Event::Driven { .. }

@@ -78,6 +78,8 @@ pub struct LinkView {
     pub refusals: Vec<Failure>,
     /// What else can drive a motor while something is armed: input pins and scripts, each as a sentence.
     pub warnings: Vec<Message>,
+    /// The address that the selected unit is about to leave for another.
+    moved_from: Option<u8>,
     /// The commands that each unit is known to lack, by its address.
     absent: BTreeMap<u8, Vec<u8>>,
 }
@@ -135,6 +137,10 @@ impl LinkView {
                 Vec::new()
             }
             Event::Connected(identity) => self.connected(identity),
+            Event::Moved { from } => {
+                self.moved_from = Some(from);
+                Vec::new()
+            }
             Event::Selected { address, stream } => {
                 self.searching = None;
                 self.select(address, stream)
@@ -199,6 +205,9 @@ impl LinkView {
 
     fn select(&mut self, address: u8, stream: Option<Stream>) -> Vec<Effect> {
         let changed = self.selected.replace(address) != Some(address);
+        if let Some(from) = self.moved_from.take() {
+            self.units.retain(|unit| unit.address != from || from == address);
+        }
         self.stream = stream.or(if changed { None } else { self.stream });
         if !changed {
             return Vec::new();

@@ -526,6 +526,9 @@ fn a_unit_that_was_given_another_address_keeps_its_edits_here() {
     bench.model().front.settings.unit_mut().unwrap().set("unit.mixing", mixing);
     bench.pass_ms(6000);
     assert_eq!(truth(&bench).unit.address, 130);
+    let units: Vec<u8> = bench.model().front.link.units.iter().map(|unit| unit.address).collect();
+    assert_eq!(units, [130], "it is one unit, wherever it answers");
+    assert!(!bench.sees("Units on this link"));
     assert!(bench.sees("Edits: 1 not written"), "{:?}", bench.model().messages.shown);
     assert!(bench.sees("Packet serial address on the controller: 130"));
     write(&mut bench);

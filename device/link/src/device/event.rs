@@ -19,6 +19,11 @@ use std::time::Duration;
 pub enum Event {
     /// A unit answered and was identified. One for each unit of the link, then [`Event::Selected`].
     Connected(Identity),
+    /// A unit has been given another address: it is no longer at the old one, and [`Event::Connected`] follows with the new one.
+    Moved {
+        /// The old address.
+        from: u8,
+    },
     /// Units are looked for, which takes a while: so many of so many places are done.
     Searching {
         /// Places that were asked.
@@ -168,6 +173,7 @@ impl Event {
             Self::JobStarted { id, .. } | Self::JobProgress { id, .. } => Some(*id),
             Self::JobEnded(report) => Some(report.id),
             Self::Connected(_)
+            | Self::Moved { .. }
             | Self::Searching { .. }
             | Self::Selected { .. }
             | Self::Sample(_)

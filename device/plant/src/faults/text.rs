@@ -26,6 +26,7 @@ In the machine (motor=1 or motor=2, else motor 1; unit=N for the Nth unit of a b
   plant:logic=VOLTS         plant:hot-board=CELSIUS   plant:e-stop
   plant:power-loss          plant:pin-volts=VOLTS,pin=N     plant:driver-fault
   plant:short-circuit       plant:boot-fault          plant:can-fault
+  plant:detect-battery      (the buttons on the board: the cells are counted from the next start on)
   plant:limit-switch=forward|backward|home,pin=N      (wires the switch to that pin)
 
 Without FROM a fault is there from the start, without TO it stays. Times: 2s, 2.5s, 500ms, 100us, 1min.";
@@ -217,6 +218,7 @@ impl<'a> Parts<'a> {
             }
             "boot-fault" => self.bare(WorldAction::SetUnitFault { fault: UnitFault::Boot, on }),
             "can-fault" => self.bare(WorldAction::SetUnitFault { fault: UnitFault::Can, on }),
+            "detect-battery" => self.bare(WorldAction::SetBatteryDetection { on }),
             "power-loss" => self.bare(WorldAction::Power { on: false }),
             "noisy-encoder" => {
                 Ok(WorldAction::SetEncoderNoise { motor, counts: number("plant:noisy-encoder=5")? })

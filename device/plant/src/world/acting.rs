@@ -50,6 +50,7 @@ impl World {
                 self.board_switches = self.board_switches.map(|_| switches);
             }
             WorldAction::SetCanPeer { peer } => self.can_line.set_peer(peer),
+            WorldAction::SetBatteryDetection { on } => self.detects_battery = on,
             WorldAction::SetRts { on } => self.rts = on,
             WorldAction::Power { on } => self.powered = on,
             WorldAction::Unplug { unplugged } => self.plugged = !unplugged,

@@ -170,6 +170,11 @@ pub enum WorldAction {
         /// The bytes.
         bytes: Vec<u8>,
     },
+    /// The buttons on the board, which choose whether the battery is detected from the next start on (MCP manual 1.4.1).
+    SetBatteryDetection {
+        /// Detected.
+        on: bool,
+    },
     /// The host's RTS line of the USB port, which forces packet serial on a port that belongs to scripts.
     SetRts {
         /// Held.
@@ -247,6 +252,7 @@ impl WorldAction {
             Self::SetBoardSwitches { .. } => Self::SetBoardSwitches { switches: before.board_switches? },
             Self::SetCanPeer { .. } => Self::SetCanPeer { peer: before.can_peer },
             Self::SendCan { .. } => return None,
+            Self::SetBatteryDetection { .. } => Self::SetBatteryDetection { on: before.detects_battery },
             Self::SetRts { .. } => Self::SetRts { on: before.rts },
             Self::Power { .. } => Self::Power { on: before.powered },
             Self::Unplug { .. } => Self::Unplug { unplugged: !before.plugged },

@@ -26,7 +26,7 @@ pub use script::{Content, ScriptRun, ScriptView};
 pub use unit_fault::{UnitFault, UnitFaults};
 pub use view::{AxisView, WorldView};
 
-use crate::bridge::BridgeOutput;
+use crate::bridge::{BridgeOutput, PwmMode};
 use crate::step::substeps;
 use crate::{
     Axis, AxisParams, AxisTruth, Board, BoardParams, ClampDrive, EncoderReading, ParamsError, Supply,
@@ -88,6 +88,8 @@ pub struct World {
     pub can_line: CanLine,
     /// Whether the host holds the USB port's RTS line.
     rts: bool,
+    /// What the buttons on the board say of detecting the battery.
+    detects_battery: bool,
     /// Those of a board that has them.
     board_switches: Option<BoardSwitches>,
     powered: bool,
@@ -119,6 +121,7 @@ impl World {
             i2c: params.i2c.clone(),
             can_line,
             rts: false,
+            detects_battery: false,
             board_switches: None,
             powered: true,
             plugged: true,
@@ -159,6 +162,13 @@ impl World {
     /// steps; positive from M+ to M-.
     pub fn measured_amps(&mut self, motor: Motor) -> f64 {
         self.axes[motor.index()].measured_amps()
+    }
+
+    /// Sets how the bridges make their mean voltages.
+    pub fn set_pwm_modes(&mut self, modes: [PwmMode; 2]) {
+        for (axis, mode) in self.axes.iter_mut().zip(modes) {
+            axis.set_pwm_mode(mode);
+        }
     }
 
     /// Voltage across the main terminals.
@@ -210,6 +220,11 @@ impl World {
     /// Whether the host holds the USB port's RTS line, which forces packet serial on it (MCP manual 1.9.3).
     pub fn rts(&self) -> bool {
         self.rts
+    }
+
+    /// Whether the buttons on the board ask for the battery to be detected at start-up (MCP manual 1.4.1).
+    pub fn detects_battery(&self) -> bool {
+        self.detects_battery
     }
 
     /// How the switches of the board stand, where it has any.

@@ -39,6 +39,7 @@ impl World {
             can_peer: self.can_line.peer(),
             can_heard: self.can_line.heard(),
             rts: self.rts,
+            detects_battery: self.detects_battery,
             board_switches: self.board_switches,
             script: None,
         }

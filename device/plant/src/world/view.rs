@@ -65,6 +65,8 @@ pub struct WorldView {
     pub can_heard: Vec<u8>,
     /// Whether the host holds the USB port's RTS line.
     pub rts: bool,
+    /// Whether the battery is to be detected at start-up.
+    pub detects_battery: bool,
     /// How the switches of the board stand; none where it has none.
     #[serde(default)]
     pub board_switches: Option<BoardSwitches>,

@@ -317,9 +317,11 @@ impl DeviceLoop {
     /// The selected unit has been given another address; the window is told as if it had just been found.
     pub(super) fn readdress(&mut self, address: u8) -> bool {
         let unit = &mut self.units[self.selected];
+        let from = unit.controller.identity().address;
         if !unit.controller.set_address(address) {
             return false;
         }
+        self.outbox.send(Event::Moved { from });
         self.outbox.send(Event::Connected(unit.controller.identity().clone()));
         self.tell_selection();
         true

@@ -4,7 +4,8 @@ use super::answer::{AnyAnswer, Handler};
 use super::commands::THEMES;
 use super::firmware::Firmware;
 use brushwork_mcp_wire::packet_serial::Framed;
-use brushwork_values::Values;
+use brushwork_mcp_wire::packet_serial::name::{KEY, MAX_ACTION, MIN_ACTION, Name};
+use brushwork_values::{Value, Values};
 use std::sync::LazyLock;
 
 impl Firmware {
@@ -13,13 +14,24 @@ impl Firmware {
         self.answer(framed.command.number, &framed.values)
     }
 
-    /// Acts on a command byte with its values, whichever wire it came over.
+    /// Acts on a command byte with its values, whichever wire it came over. A packet that is not valid for any reason is not
+    /// acknowledged (MCP manual 2.2.5); that a value beyond its valid range is such a reason, and changes nothing, is assumed.
     pub(super) fn answer(&mut self, number: u8, values: &Values) -> AnyAnswer {
         match handler(number) {
-            Some(handler) => handler.act(self, values),
-            None => AnyAnswer::Silence,
+            Some(handler) if is_valid(values) => handler.act(self, values),
+            Some(_) | None => AnyAnswer::Silence,
         }
     }
+}
+
+/// Fields that are taken whatever they carry: a wrong key has an answer of its own, and the actions of a signal may be joined.
+const ALWAYS_VALID: [&str; 3] = [KEY::TEXT, MIN_ACTION::TEXT, MAX_ACTION::TEXT];
+
+fn is_valid(values: &Values) -> bool {
+    values.iter().all(|(field, value)| match value {
+        Value::Int(raw) => ALWAYS_VALID.contains(&field.name) || field.allows(*raw),
+        Value::Text(_) | Value::Bytes(_) | Value::Records(_) => true,
+    })
 }
 
 /// The handler of a command byte.

@@ -11,7 +11,7 @@ use crate::motion::{BridgeOverride, Channel, Conditions, Measured, Mixer, Motion
 use crate::priority::Source;
 use crate::settings::{Image, Settings};
 use crate::signals::{Signal, Triggers};
-use crate::supervision::{EStop, Protection};
+use crate::supervision::{DetectedBattery, EStop, Protection};
 use brushwork_mcp_wire::models::{Family, Model};
 use brushwork_mcp_wire::packet_serial::{Address, Generation};
 use brushwork_plant::bridge::BridgeOutput;
@@ -39,6 +39,8 @@ pub(super) struct Firmware {
     pub counts: Vec<i64>,
     pub readings: Readings,
     pub protection: Protection,
+    /// What automatic detection found at start-up, where it is on.
+    pub battery: Option<DetectedBattery>,
     /// Something was wrong at start-up.
     pub boot_warning: bool,
     pub estop: EStop,
@@ -109,6 +111,7 @@ impl Firmware {
             signals: vec![Signal::default(); settings.signals.len()],
             readings,
             protection: Protection::default(),
+            battery: readings.detects_battery.then(|| DetectedBattery::of(readings.main_volts)),
             boot_warning: readings.unit_faults.has(UnitFault::Boot),
             estop: EStop::default(),
             triggers: Triggers::default(),

@@ -37,13 +37,11 @@ impl Controller {
     pub(super) fn carry_out(&mut self, command: u8, args: &[i64]) -> Outcome {
         let now = self.now;
         let Some(form) = self.form_of(command) else { return Outcome::Refused };
-        let (Some(firmware), Some(handler)) = (&mut self.firmware, handler(command)) else {
-            return Outcome::Refused;
-        };
+        let Some(firmware) = &mut self.firmware else { return Outcome::Refused };
         firmware.now = now;
         firmware.from_can = true;
         let values = Values::new(form.request, args.iter().map(|&value| Value::Int(value)).collect());
-        let answer = handler.act(firmware, &values);
+        let answer = firmware.answer(command, &values);
         firmware.from_can = false;
         match answer {
             Answer::Ack => Outcome::Done,

@@ -19,6 +19,8 @@ pub struct Readings {
     pub amps: [f64; 2],
     /// The E-stop button.
     pub estop_pressed: bool,
+    /// The buttons on the board ask for the battery to be detected.
+    pub detects_battery: bool,
     /// What is wrong inside the unit.
     pub unit_faults: UnitFaults,
     /// The encoders as they are plugged in.
@@ -36,6 +38,7 @@ impl Readings {
             celsius: world.board_celsius(),
             amps: Motor::BOTH.map(|motor| world.measured_amps(motor)),
             estop_pressed: world.estop_pressed(),
+            detects_battery: world.detects_battery(),
             unit_faults: world.unit_faults(),
             plugs: Motor::BOTH.map(|motor| world.encoder(motor)),
             encoders: [EncoderInput::Quadrature(0); 2],

@@ -7,6 +7,7 @@ use crate::motion::{BridgeOverride, MotionCommand};
 use crate::supervision::{EStopReset, LedInputs, Limits, Observed, OutputInputs, leds, output_is_on};
 use brushwork_mcp_wire::packet_serial::{Generation, scale};
 use brushwork_plant::ClampDrive;
+use brushwork_plant::bridge::PwmMode;
 use brushwork_plant::world::{UnitFault, World};
 use brushwork_values::Motor;
 
@@ -62,6 +63,7 @@ impl Firmware {
         self.leds = leds(&LedInputs {
             up_for: self.up_for(),
             since_last_byte: last_byte.map(|last| self.now.saturating_sub(last)),
+            detected_cells: self.battery.map(|battery| battery.cells),
             driving: states.iter().any(|state| state.active),
             in_boot_mode: self.loader.is_some(),
             conditions: self.conditions(),
@@ -77,8 +79,18 @@ impl Firmware {
         for (state, (settings, over)) in self.outputs.iter_mut().zip(settings) {
             *state = over.unwrap_or_else(|| output_is_on(settings, &inputs));
         }
+        world.set_pwm_modes(Motor::BOTH.map(|motor| self.pwm_mode(motor)));
         if let Some(dout) = world.brake_resistor_dout() {
             world.set_clamp(self.clamp_drive(dout));
+        }
+    }
+
+    /// How a bridge makes its mean voltage (command 148).
+    fn pwm_mode(&self, motor: Motor) -> PwmMode {
+        const SIGN_MAGNITUDE: u8 = 1;
+        match self.settings.motors[motor.index()].pwm_mode {
+            SIGN_MAGNITUDE => PwmMode::SignMagnitude,
+            _ => PwmMode::LockedAntiphase,
         }
     }
 
@@ -111,7 +123,7 @@ impl Firmware {
         if !is_overridden
             && settings.is_some_and(|output| output.action == ACTION_OVER_VOLTAGE && !output.inverted)
         {
-            let on_volts = f64::from(self.settings.battery.main_max_tenths) * scale::VOLTAGE_VOLTS;
+            let on_volts = self.limits().main_volts.1;
             return ClampDrive::Above { on_volts, off_volts: on_volts - OVER_VOLTAGE_HYSTERESIS_VOLTS };
         }
         if self.outputs.get(dout) == Some(&true) { ClampDrive::On } else { ClampDrive::Off }
@@ -159,7 +171,10 @@ impl Firmware {
         let volts = |tenths: u16| f64::from(tenths) * scale::VOLTAGE_VOLTS;
         let motion = Motor::BOTH.map(|motor| self.motion_settings(motor));
         Limits {
-            main_volts: (volts(battery.main_min_tenths), volts(battery.main_max_tenths)),
+            main_volts: match self.battery {
+                Some(detected) => detected.limits_volts(),
+                None => (volts(battery.main_min_tenths), volts(battery.main_max_tenths)),
+            },
             rated_main_volts: self.model.main_volts,
             logic_volts: (volts(battery.logic_min_tenths), volts(battery.logic_max_tenths)),
             max_amps: motion.map(|settings| settings.max_current_amps()),

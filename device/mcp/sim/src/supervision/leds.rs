@@ -19,6 +19,8 @@ pub struct LedInputs {
     pub up_for: Duration,
     /// Time since the last received byte.
     pub since_last_byte: Option<Duration>,
+    /// Lithium polymer cells that were counted at start-up, if they were.
+    pub detected_cells: Option<u32>,
     /// Either bridge drives.
     pub driving: bool,
     /// The unit waits for new firmware.
@@ -37,7 +39,18 @@ pub fn leds(inputs: &LedInputs) -> Leds {
     // An emergency stop keeps all three lit, whatever comes in.
     let blinks = code.stat1 == Light::Lit && !inputs.conditions.contains(Condition::EStop);
     let dark = blinks && inputs.since_last_byte.is_some_and(|since| since < DATA_BLINK);
-    Leds { stat1: lit(code.stat1) && !dark, stat2: lit(code.stat2), err: lit(code.err) }
+    let stat2 = shown_cells(inputs)
+        .map_or_else(|| lit(code.stat2), |counted| counted.is_lit(inputs.up_for - POWER_UP_BLINK));
+    Leds { stat1: lit(code.stat1) && !dark, stat2, err: lit(code.err) }
+}
+
+/// STAT2 blinks once for each cell that was counted, then goes on as ever (MCP manual 1.4.1). Assumed: right after the blink at
+/// power up.
+fn shown_cells(inputs: &LedInputs) -> Option<Light> {
+    let counted = Light::Flashes(inputs.detected_cells?);
+    let is_shown =
+        inputs.up_for < POWER_UP_BLINK + counted.period()? && !inputs.conditions.contains(Condition::EStop);
+    is_shown.then_some(counted)
 }
 
 #[cfg(test)]

@@ -1,10 +1,11 @@
 //! Voltage, current and temperature limits and what they do to the motors (MCP manual 1.6.3).
 //!
 //! Assumed, all in this file: the maximum of command 57 is the high *warning*, the model's own rating the high *error*; the
-//! logic supply's minimum is compared with the higher of logic and main battery, since either feeds the logic (1.0.10); the
-//! current limit falls in a straight line from all of it at 85 degrees to none at 100; where braking and freewheeling are
-//! both asked for, an error wins over a warning and otherwise braking wins; a fault of a bridge and a short circuit let both
-//! motors freewheel until a restart (1.6.2 says that a fault disables both outputs until the unit is reset).
+//! logic battery's minimum counts for a logic battery that is connected, and where none is for the main battery, which feeds
+//! the logic then (1.0.10); the current limit falls in a straight line from all of it at 85 degrees to none at 100; where
+//! braking and freewheeling are both asked for, an error wins over a warning and otherwise braking wins; a fault of a bridge
+//! and a short circuit let both motors freewheel until a restart (1.6.2 says that a fault disables both outputs until the unit
+//! is reset).
 
 use crate::motion::BridgeOverride;
 
@@ -68,7 +69,7 @@ pub struct Protection {
     pub main_low_warning: bool,
     /// Latched: the logic battery was above its maximum. Motors freewheel.
     pub logic_high_error: bool,
-    /// Latched: the logic supply was below its minimum. Motors freewheel.
+    /// Latched: the logic battery, or the main battery that stands in for it, was below the minimum. Motors freewheel.
     pub logic_low_error: bool,
     /// The motor draws as much current as it may.
     pub over_current: [bool; 2],
@@ -97,7 +98,8 @@ impl Protection {
         self.main_low_error = observed.main_volts < limits.rated_main_volts.0;
         self.main_high_error |= observed.main_volts > limits.rated_main_volts.1;
 
-        let logic_supply_volts = observed.logic_volts.max(observed.main_volts);
+        let logic_supply_volts =
+            if observed.logic_volts > 0.0 { observed.logic_volts } else { observed.main_volts };
         self.logic_high_error |= observed.logic_volts > limits.logic_volts.1;
         self.logic_low_error |= logic_supply_volts < limits.logic_volts.0;
 
@@ -234,8 +236,10 @@ mod tests {
         let high = Observed { logic_volts: 16.0, ..GOOD };
         assert!(after(high).logic_high_error && lasts(high));
         assert_eq!(after(high).bridge(), BridgeOverride::Freewheel);
-        let low = Observed { main_volts: 7.0, logic_volts: 7.5, ..GOOD };
-        assert!(after(low).logic_low_error && lasts(low));
+        for (main_volts, logic_volts) in [(7.0, 7.5), (24.0, 7.5), (7.0, 0.0)] {
+            let low = Observed { main_volts, logic_volts, ..GOOD };
+            assert!(after(low).logic_low_error && lasts(low), "{main_volts} V main, {logic_volts} V logic");
+        }
     }
 
     #[test]

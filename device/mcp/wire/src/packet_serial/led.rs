@@ -59,6 +59,14 @@ impl Light {
         }
     }
 
+    /// Time until it starts again, the pause included; `None` for what does not count.
+    pub fn period(self) -> Option<Duration> {
+        match self {
+            Self::Flashes(count) => Some(FLASH * 2 * count + PAUSE),
+            Self::Dark | Self::Lit | Self::TakesTurns { .. } => None,
+        }
+    }
+
     /// Time until it next changes; `None` if it does not.
     pub fn changes_in(self, at: Duration) -> Option<Duration> {
         let to_next = |step: Duration| {

@@ -44,7 +44,6 @@ pub(super) const HANDLERS: Handlers = &[
         Answer::of([tell_value(SERIAL_NUMBER, Value::Text(label))])
     }),
     &On(commands::SET_ADDRESS_MIXED, |unit, args| {
-        // Assumed: an address outside 0x80 to 0x87 leaves the old one.
         if let Some(address) = Address::new(args.u8(ADDRESS)) {
             unit.settings.unit.address = address.get();
         }

@@ -186,3 +186,39 @@ fn what_is_read_is_what_the_unit_knows() {
     assert_eq!(all.int(name::STATUS), i64::from(unit.status_word()));
     assert!(main > 200 && all.int(name::ENCODER_M1) > 0 && all.int(name::ENCODER_M2) < 0);
 }
+
+/// MCP manual 2.2.5: "If the packet was not valid for any reason no acknowledgement will be sent back."
+#[test]
+fn a_value_beyond_its_valid_range_is_not_acknowledged_and_changes_nothing() {
+    for generation in Generation::ALL {
+        let mut bench = Bench::new(generation);
+        let before = bench.unit().settings();
+        // Command 0: "Valid data range is 0 - 127". 2: "0 - 140". 139: levels are 0 to 3. 141: "0x80 to 0x87", flag 0 or 1.
+        // 148: 0 or 1. 32: "-32767 to +32767".
+        let refused: [(u8, &[i64]); 8] = [
+            (number::FORWARD_M1, &[200]),
+            (number::SET_MAIN_VOLTAGE_MIN, &[141]),
+            (number::SET_PRIORITIES, &[1, 2, 4]),
+            (number::SET_ADDRESS_MIXED, &[0x88, 0]),
+            (number::SET_ADDRESS_MIXED, &[0x80, 2]),
+            (number::DUTY_M1, &[-32_768]),
+            (number::DUTY_ACCEL_M1, &[100, 655_360]),
+            (number::SET_DOUT_ACTION, &[0, 12]),
+        ];
+        for (command, values) in refused {
+            assert!(bench.try_ask(command, values).is_none(), "{command} {values:?} in {generation}");
+        }
+        bench.wait(Duration::from_millis(100));
+        assert_eq!(bench.unit().settings(), before, "{generation}");
+        assert_eq!(bench.read(commands::READ_PWMS, name::DUTY_M1), 0, "{generation}");
+        let taken: [(u8, &[i64]); 4] = [
+            (number::FORWARD_M1, &[127]),
+            (number::SET_PRIORITIES, &[1, 2, 3]),
+            (number::SET_ADDRESS_MIXED, &[0x80, 1]),
+            (number::DUTY_M1, &[-32_767]),
+        ];
+        for (command, values) in taken {
+            assert!(bench.try_ask(command, values).is_some(), "{command} {values:?} in {generation}");
+        }
+    }
+}

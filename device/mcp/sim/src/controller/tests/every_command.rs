@@ -27,6 +27,9 @@ fn sample_int(field: &Field, salt: i64) -> i64 {
     if field.name == "index" && !matches!(field.kind, Kind::U16) {
         return INDEX;
     }
+    if let [_, ..] = field.codes {
+        return field.codes[salt as usize % field.codes.len()].raw;
+    }
     let (low, high) = field.raw_range.or(field.kind.limits()).unwrap_or((0, 100));
     (low.max(0) + salt).min(high)
 }

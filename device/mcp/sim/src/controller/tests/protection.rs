@@ -151,6 +151,97 @@ fn a_locked_shaft_is_held_to_the_current_limit_and_warned_about() {
     );
 }
 
+/// MCP manual 1.6.3: "Error LED lit while condition is active. Over Current, Warning, Motor power is automatically limited."
+#[test]
+fn a_locked_shaft_lights_the_error_led_whichever_loop_drives() {
+    for generation in Generation::ALL {
+        let mut bench = Bench::new(generation);
+        bench.ask(
+            commands::SET_CURRENT_LIMITS_M1,
+            &[150, if generation == Generation::Gen1 { -150 } else { 150 }],
+        );
+        bench.ask(commands::SET_POSITION_PID_M1, &[0, 0x1000, 0, 0, 0, -100_000, 100_000]);
+        bench.apply(&WorldAction::LockShaft { motor: Motor::M1, on: true });
+        for drive in ["duty", "speed", "position"] {
+            match drive {
+                "duty" => drop(bench.ask(commands::DUTY_M1, &[32_767])),
+                "speed" => drop(bench.ask(commands::SPEED_M1, &[40_000])),
+                _ => drop(bench.ask(commands::POSITION_PROFILE_M1, &[100_000, 40_000, 100_000, 50_000, 1])),
+            }
+            bench.wait_talking(Duration::from_millis(900));
+            for look in 0..20 {
+                bench.wait_talking(Duration::from_millis(10));
+                assert!(leds(&bench).err, "{drive} in {generation}, look {look}");
+                assert!(
+                    has(&mut bench, Condition::M1OverCurrentWarning),
+                    "{drive} in {generation}, look {look}"
+                );
+            }
+            bench.ask(commands::DUTY_M1, &[0]);
+            bench.wait_talking(A_MOMENT);
+            assert!(!leds(&bench).err, "{drive} in {generation}: it is over");
+        }
+    }
+}
+
+/// MCP manual 1.4.1: "Auto detect will sample the main battery voltage on power up or after a reset ... the Stat2 LED will blink to
+/// indicate the battery cell count that was detected. Each blink indicates the number of LIPO cells detected."
+#[test]
+fn stat2_blinks_once_for_each_cell_that_was_detected_at_power_up_and_the_battery_is_protected() {
+    for (volts, cells) in [(11.1, 3), (14.8, 4), (22.2, 6)] {
+        let mut bench = Bench::new(Generation::Gen1);
+        bench.apply(&WorldAction::SetBatteryVolts { volts });
+        bench.apply(&WorldAction::SetBatteryDetection { on: true });
+        bench.wait(Duration::from_secs(2));
+        assert!(!leds(&bench).stat2, "it counts at power up, not before");
+        bench.apply(&WorldAction::Power { on: false });
+        bench.wait(A_MOMENT);
+        bench.apply(&WorldAction::Power { on: true });
+        bench.wait(crate::supervision::POWER_UP_BLINK - Duration::from_millis(10));
+        let looks: Vec<bool> = (0..500)
+            .map(|_| {
+                bench.wait(Duration::from_millis(10));
+                leds(&bench).stat2
+            })
+            .collect();
+        // The blink of all three at power up runs into the first of them.
+        let blinks = looks.windows(2).filter(|pair| pair[0] && !pair[1]).count();
+        assert_eq!(blinks, cells, "{volts} V");
+        // The lowest that so many cells may have is 3 V each.
+        bench.apply(&WorldAction::SetBatteryVolts { volts: 2.9 * cells as f64 });
+        bench.wait_talking(A_MOMENT);
+        assert!(has(&mut bench, Condition::MainBatteryLowWarning), "{volts} V");
+    }
+}
+
+/// Commands 26 and 58 "set logic input (LB- / LB+) minimum voltage level. RoboClaw will shut down with an error if the voltage is
+/// below this level": a good main battery is no excuse. MCP manual 1.0.10: without a logic battery the main one feeds the logic.
+#[test]
+fn the_logic_minimum_is_the_logic_batterys_own_where_one_is_connected() {
+    for (logic_volts, is_low) in [(0.0, false), (7.5, true), (8.5, false)] {
+        let mut bench = Bench::new(Generation::Gen1);
+        bench.apply(&WorldAction::SetLogicVolts { volts: logic_volts });
+        bench.wait_talking(A_MOMENT);
+        assert_eq!(has(&mut bench, Condition::LogicBatteryLowError), is_low, "{logic_volts} V");
+    }
+}
+
+/// Command 148: "Set PWM Drive mode. Locked Antiphase(0) or Sign Magnitude(1)." The mean is the same, the ripple at rest is not.
+#[test]
+fn locked_antiphase_heats_a_motor_at_rest_and_sign_magnitude_does_not() {
+    let watts = |mode| {
+        let mut bench = Bench::new(Generation::Gen1);
+        bench.ask(commands::SET_PWM_MODE, &[mode]);
+        bench.ask(commands::DUTY_BOTH, &[0, 0]);
+        bench.wait(Duration::from_secs(2));
+        let view = bench.unit().view();
+        assert_eq!(view.axes[0].truth.amps, 0.0, "no current in the mean");
+        view.battery_amps * view.battery_volts
+    };
+    let [antiphase, magnitude] = [0, 1].map(watts);
+    assert!(antiphase > magnitude + 0.02, "{antiphase} W and {magnitude} W");
+}
+
 #[test]
 fn a_locked_emergency_stop_needs_a_restart() {
     for generation in Generation::ALL {
