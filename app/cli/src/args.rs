@@ -318,7 +318,9 @@ pub struct SimArgs {
     /// Hold the USB port's RTS line from the start, which forces packet serial where a script has taken the port.
     #[arg(long)]
     pub rts: bool,
-    /// Take commands on standard input while it runs: "rts on", "rts off".
+    /// Take commands on standard input while it runs: "rts on", "rts off", "power off", "power on", "power cycle", with a
+    /// unit's number behind it where there are several. A unit that loses its power in the midst of an update wakes up in its loader:
+    /// that way recovery can be practised.
     #[arg(long)]
     pub control: bool,
     /// Write the simulator's own truth to FILE as JSON ten times a second.

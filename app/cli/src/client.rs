@@ -14,6 +14,7 @@ use super::examples;
 use super::family;
 use super::shared_args::LineArgs;
 use super::{ConnectArgs, Exit, Family, Interrupt, say};
+use brushwork_core::keep::Store;
 use brushwork_core::session::{self, LIKE, Session, SessionOptions, Simulation};
 use brushwork_link::family::addresses_text;
 
@@ -39,11 +40,27 @@ impl Client {
     /// # Errors
     /// Says on standard error what went wrong and gives the exit code.
     pub fn connect(args: &ConnectArgs, poll: PollRate, interrupt: &Interrupt) -> Result<Self, Exit> {
-        let session = open(args, poll)?;
+        Self::connect_to(args, poll, None, interrupt)
+    }
+
+    /// The same, to a simulation that runs already where the target names it.
+    ///
+    /// # Errors
+    /// As for [`Self::connect`].
+    pub fn connect_to(
+        args: &ConnectArgs,
+        poll: PollRate,
+        running: Option<Arc<Simulation>>,
+        interrupt: &Interrupt,
+    ) -> Result<Self, Exit> {
+        let session = open(args, poll, running)?;
         if let Some(simulation) = &session.simulation {
             simulation.unlike().iter().for_each(say);
         }
-        let (identity, stream) = wait_for_identity(&session.device, interrupt)?;
+        let place = args.connect.as_str();
+        let (identity, stream) =
+            wait_for_identity(&session.device, interrupt).map_err(|exit| with_loader(exit, place))?;
+        Store::of_user().close_update(place);
         Ok(Self { session, identity, stream })
     }
 
@@ -70,10 +87,15 @@ impl Client {
 ///
 /// # Errors
 /// Says on standard error what went wrong and gives the exit code.
-pub fn open(args: &ConnectArgs, poll: PollRate) -> Result<Session, Exit> {
+pub fn open(args: &ConnectArgs, poll: PollRate, running: Option<Arc<Simulation>>) -> Result<Session, Exit> {
     let target = target(args)?;
-    let options = SessionOptions { addresses: addresses(&target, args), poll, family: args.family };
-    session::open(&target, options, SystemClock::shared(), None).map_err(|error| Exit::NoLink.saying(error))
+    session::open(&target, options(&target, args, poll), SystemClock::shared(), running)
+        .map_err(|error| Exit::NoLink.saying(error))
+}
+
+/// How the target is looked at.
+pub fn options(target: &ConnectTarget, args: &ConnectArgs, poll: PollRate) -> SessionOptions {
+    SessionOptions { addresses: addresses(target, args), poll, family: args.family }
 }
 
 /// What `--connect` and `--address` name.
@@ -151,6 +173,13 @@ fn at_addresses(target: ConnectTarget, addresses: &[u8]) -> ConnectTarget {
         | ConnectTarget::Can { .. }
         | ConnectTarget::Sim(_)) => other,
     }
+}
+
+/// Says what is known of a place at which nobody answers.
+pub fn with_loader(exit: Exit, place: &str) -> Exit {
+    let waiting = (exit == Exit::NoLink).then(|| session::waiting_at(place)).flatten();
+    waiting.into_iter().for_each(say);
+    exit
 }
 
 fn wait_for_identity(

@@ -13,8 +13,8 @@ pub const HELP: &str = "Exit codes:\n  \
     3  no controller could be reached, or the link was lost\n  \
     4  the controller or a safety rule refused or ended it; drive: a motor did not do what it was told,\n     \
     the stop was not confirmed, or the motor is not held, since its loop was left off\n  \
-    5  settings: a value or a profile was refused, or something did not take\n  \
-    6  settings diff: there are differences\n  \
+    5  settings: a value or a profile was refused, or something did not take; firmware: the new version does not run\n  \
+    6  settings diff, firmware update: there are differences\n  \
     8  tune: gains were found, with warnings to read\n  \
     9  mcl: a script has errors\n  \
     10  mcl run: the script was stopped by a fault\n  \
@@ -34,9 +34,9 @@ pub enum Exit {
     NoLink = 3,
     /// The controller or a safety rule refused.
     Refused = 4,
-    /// A setting's value or a profile was refused, or did not take.
+    /// A setting's value, a profile or firmware was refused, or did not take.
     NotTaken = 5,
-    /// `settings diff` found differences.
+    /// `settings diff`, or a comparison after an update, found differences.
     Different = 6,
     /// The tuner found gains, with something to know about them.
     TunedWithWarnings = 8,

@@ -54,6 +54,11 @@ pub fn run(args: &ListArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
 fn describe(port: &PortInfo) -> String {
     let words = [port.manufacturer.as_deref(), port.product.as_deref(), port.serial_number.as_deref()];
     let text = words.into_iter().flatten().collect::<Vec<_>>().join(" ");
+    if port.is_loader() {
+        return format!(
+            "{text}: waits in its firmware loader; resume its update with: brushwork firmware update --resume"
+        );
+    }
     match (text.is_empty(), port.usb_id) {
         (false, _) => text,
         (true, Some((vendor, product))) => format!("USB {vendor:04x}:{product:04x}"),
@@ -88,6 +93,7 @@ fn scan(path: &str, interrupt: &Interrupt) -> Vec<Identity> {
             Ok(Event::Connected(identity)) => units.push(identity),
             Ok(Event::Lost(failure)) => {
                 say(failure.to_string());
+                session::waiting_at(path).into_iter().for_each(say);
                 break;
             }
             Ok(Event::Selected { .. }) | Err(_) => break,

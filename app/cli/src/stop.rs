@@ -76,7 +76,7 @@ fn stop_line(line: &LineArgs, interrupt: &Interrupt) -> Result<LineStop, Exit> {
         if !on_can {
             say("The stop was written to all of them, but nobody confirmed it. If a motor runs, cut its power.");
         }
-        Exit::NoLink
+        client::with_loader(Exit::NoLink, &line.connect)
     })?;
     if on_can {
         session.device.stop_all();

@@ -12,6 +12,7 @@ pub mod session;
 pub mod settings;
 pub mod stop;
 pub mod tune;
+pub mod update;
 pub mod words;
 
 #[cfg(test)]

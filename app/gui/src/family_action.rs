@@ -32,6 +32,9 @@ pub trait Host {
     /// Disarms the screen in front.
     fn disarm(&mut self);
 
+    /// Connects to a target, as if it had been typed.
+    fn connect_to(&mut self, target: &str);
+
     /// Where backups are kept.
     fn store(&self) -> Store;
 

@@ -113,7 +113,9 @@ fn an_update_needs_the_risk_accepted_and_backs_the_settings_up_first() {
     let run = firmware(&arguments);
     assert_eq!(run.code, 0, "{run:?}");
     assert!(run.stdout.contains("128 pages were sent and confirmed"), "{run:?}");
-    assert!(run.stdout.contains("settings diff"), "what to do next is said: {run:?}");
+    let updated = "The firmware is updated: USB Roboclaw 2x7a v4.2.8 before, USB Roboclaw 2x7a v9.8.7 now.";
+    assert!(run.stdout.contains(updated), "{run:?}");
+    assert!(run.stdout.contains("The settings are as they are in the backup."), "{run:?}");
     assert!(unit.flash() == holds(&unit.path("new.bin")));
     brushwork::install();
     assert!(Profile::load(&backup).unwrap().firmware.contains("v4.2.8"), "the backup is of the old firmware");
@@ -149,13 +151,29 @@ fn an_update_that_is_killed_is_resumed_after_a_power_cycle() {
     let backup = unit.path("backup.json").display().to_string();
     let update =
         command(&["update", &image, "--connect", &port, "--simulated", "--accept-risk", "--backup", &backup]);
-    let program = Program::spawn(update);
+    let updating = Program::spawn(update);
     unit.until("a first page", |unit| matches!(unit.flash(), Flash::Filling(_)));
-    drop(program);
+    drop(updating);
     assert!(matches!(unit.flash(), Flash::Filling(_)), "it was killed before its end");
     unit.power_cycle();
-    let lost = firmware(&["info", "--connect", &port]);
-    assert_eq!(lost.code, 3, "in its loader it answers no packet: {lost:?}");
+    let commands: [&[&str]; 6] = [
+        &["firmware", "info"],
+        &["status"],
+        &["drive", "--duty", "10", "--for", "1"],
+        &["settings", "read"],
+        &["stop"],
+        &["script", "status"],
+    ];
+    for words in commands {
+        let mut lost = program();
+        let lost = run(lost.args(words).args(["--connect", &port]));
+        assert_eq!(lost.code, 3, "in its loader it answers no packet: {lost:?}");
+        let told = format!("resume the update: brushwork firmware update {image} --connect {port} --resume");
+        assert!(
+            lost.stderr.contains(&told) && lost.stderr.contains("--model roboclaw-2x7a"),
+            "{words:?}: {lost:?}"
+        );
+    }
     let resume = [
         "update",
         &image,
@@ -170,5 +188,42 @@ fn an_update_that_is_killed_is_resumed_after_a_power_cycle() {
     let run = firmware(&resume);
     assert_eq!(run.code, 0, "{run:?}");
     assert!(run.stderr.contains("after the controller was switched off and on"), "{run:?}");
+    assert!(
+        run.stdout.contains("v4.2.8 before, USB Roboclaw 2x7a v9.8.7 now."),
+        "what ran before is remembered: {run:?}"
+    );
+    assert!(run.stdout.contains("The settings are as they are in the backup."), "{run:?}");
     assert!(unit.flash() == holds(&unit.path("new.bin")));
+}
+
+#[test]
+fn bytes_that_are_no_firmware_are_sent_and_not_called_an_update() {
+    let unit = Unit::start();
+    let file = unit.path("noise.bin");
+    let noise: Vec<u8> = (0..0x8000_u32).map(|at| (at.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
+    std::fs::write(&file, noise).unwrap();
+    let run = firmware(&["update", &file.display().to_string(), "--connect", &unit.port(), "--accept-risk"]);
+    assert_eq!(run.code, 5, "{run:?}");
+    let unchanged = "The version did not change: the controller still calls itself USB Roboclaw 2x7a v4.2.8.";
+    assert!(run.stdout.contains(unchanged), "{run:?}");
+}
+
+#[test]
+fn settings_that_differ_after_an_update_are_listed_and_written_back_when_that_is_wanted() {
+    for restore in [false, true] {
+        let unit = Unit::start();
+        let (image, port) = (unit.image(), unit.port());
+        // In RAM alone: the restart forgets it.
+        let written =
+            run(program().args(["settings", "write", "-c", &port, "motor1.velocity.qpps=12345", "--yes"]));
+        assert_eq!(written.code, 0, "{written:?}");
+        let mut update = vec!["update", &image, "--connect", &port, "--simulated", "--accept-risk"];
+        update.extend(restore.then_some("--restore"));
+        let run = firmware(&update);
+        assert_eq!(run.code, if restore { 0 } else { 6 }, "{run:?}");
+        assert!(run.stdout.contains("12345 counts/s in the backup, 44000 counts/s now"), "{run:?}");
+        assert_eq!(run.stdout.contains("brushwork settings restore"), !restore, "{run:?}");
+        let qpps = unit.server.inspect(|bus| bus.controllers()[0].stored_settings().motors[0].motion.qpps);
+        assert_eq!(qpps.unwrap(), if restore { 12_345 } else { 44_000 });
+    }
 }

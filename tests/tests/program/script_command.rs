@@ -162,3 +162,43 @@ fn rts_by_the_controls_of_a_served_controller_brings_packet_serial_back() {
         assert!(said.contains(sentence), "{said}");
     }
 }
+
+#[test]
+fn the_power_of_a_served_controller_is_switched_and_cycled_by_its_controls() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let link = folder.path().join("mcp");
+    let mut sim = Program::start(BRUSHWORK, &["sim", "--pty", &text(&link), "--control"]);
+    sim.wait_for("Connect with", LIMIT);
+    let mut port = SerialTransport::open(&text(&link), 115_200).expect("the port opens");
+    let ask_version = |port: &mut SerialTransport| send(port, number::READ_VERSION);
+    hear(&mut port, b"MCP266", ask_version);
+    sim.say("power off");
+    let deadline = Instant::now() + LIMIT;
+    let is_silent = |port: &mut SerialTransport| {
+        while port.read(&mut [0; 256], Duration::from_millis(200)).expect("the port is there") > 0 {}
+        ask_version(port);
+        port.read(&mut [0; 256], Duration::from_millis(300)).expect("the port is there") == 0
+    };
+    while !is_silent(&mut port) {
+        assert!(Instant::now() < deadline, "it still answers");
+    }
+    sim.say("power on");
+    hear(&mut port, b"MCP266", ask_version);
+    sim.say("power cycle 1");
+    sim.say("power cycle 2");
+    sim.say("reboot");
+    hear(&mut port, b"MCP266", ask_version);
+    sim.signal("INT");
+    let ending = sim.finish(LIMIT);
+    assert_eq!(code(&ending), Some(DONE), "{ending:?}");
+    let said = ending.stderr.join("\n");
+    for sentence in [
+        "The power is off.",
+        "The power is on.",
+        "The power was off for half a second.",
+        "\"power cycle 2\" is no command",
+        "\"reboot\" is no command",
+    ] {
+        assert!(said.contains(sentence), "{said}");
+    }
+}

@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::args::{BackupsArgs, RestoreArgs};
+use super::args::{BackupsArgs, RestoreArgs, WriteHow};
 use super::controller::Controller;
 use super::{profile, write};
 use crate::{Exit, Interrupt, Output, say};
@@ -55,6 +55,13 @@ pub fn restore(args: &RestoreArgs, out: &mut Output, interrupt: &Interrupt) -> R
     say(format!("Backup {} ({}).", backup.name, backup.unit()));
     let opened = profile::open(&backup.path)?;
     write::bring_about(&controller, Some(opened), &[], &args.how, out)
+}
+
+/// Writes a backup back and saves it, asked for before.
+pub fn write_back(controller: &Controller<'_>, name: &str, out: &mut Output) -> Result<Exit, Exit> {
+    let opened = profile::open(&find(name)?.path)?;
+    let how = WriteHow { yes: true, dry_run: false, save: true, only: Vec::new(), json: false };
+    write::bring_about(controller, Some(opened), &[], &how, out)
 }
 
 /// The backup of that name, or the only one whose name begins so.

@@ -3,6 +3,7 @@
 use brushwork_link::Message;
 use brushwork_link::messages::ActMessage;
 use std::io::{self, IsTerminal as _, Write as _};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use brushwork_link::device::{JobContext, JobReport};
@@ -16,6 +17,7 @@ use super::cut_short;
 use crate::interrupt::exit_of_interruption;
 use crate::{Client, ConnectArgs, Exit, Interrupt, say};
 use brushwork_core::keep::{Keeping, Store, UnitId, profile_of};
+use brushwork_core::session::Simulation;
 use brushwork_core::settings::{Act, Done};
 
 /// How long a cancelled job may take to end.
@@ -44,7 +46,19 @@ impl<'i> Controller<'i> {
     /// # Errors
     /// Says on standard error what went wrong and gives the exit code.
     pub fn connect(args: &ConnectArgs, interrupt: &'i Interrupt) -> Result<Self, Exit> {
-        let client = Client::connect(args, PollRate::Off, interrupt)?;
+        Self::connect_to(args, None, interrupt)
+    }
+
+    /// The same, to a simulation that runs already where the target names it.
+    ///
+    /// # Errors
+    /// As for [`Self::connect`].
+    pub fn connect_to(
+        args: &ConnectArgs,
+        running: Option<Arc<Simulation>>,
+        interrupt: &'i Interrupt,
+    ) -> Result<Self, Exit> {
+        let client = Client::connect_to(args, PollRate::Off, running, interrupt)?;
         let version = &client.identity.version_text;
         let Some(subject) = client.identity.subject() else {
             return Err(Exit::Refused.saying(format!(

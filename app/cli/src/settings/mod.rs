@@ -5,7 +5,7 @@
 
 pub mod args;
 pub(super) mod ask;
-mod backups;
+pub mod backups;
 mod compare;
 pub(super) mod controller;
 mod copy;

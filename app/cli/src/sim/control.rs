@@ -1,5 +1,6 @@
-//! Commands on standard input while simulated controllers run: the control of their RTS line.
+//! Commands on standard input while simulated controllers run: their RTS line and their power.
 
+use std::time::Duration;
 use std::{io, thread};
 
 use brushwork_core::session::line::SimulatedLine;
@@ -26,18 +27,52 @@ pub fn lines() -> Option<Receiver<String>> {
     Some(lines)
 }
 
-/// Does what a line says.
+/// How long the power stays off in a cycle.
+const POWER_OFF: Duration = Duration::from_millis(500);
+
+/// Does what a line says. A number behind it means that unit of several, counted from 1.
 pub fn obey(line: &str, server: &SimHandle<SimulatedLine>) {
-    let on = match line.split_whitespace().collect::<Vec<_>>()[..] {
-        ["rts", "on"] => true,
-        ["rts", "off"] => false,
-        [] => return,
-        _ => return say(format!("\"{line}\" is no command. There are: rts on, rts off.")),
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let (words, unit) = match words.as_slice() {
+        [first, second, number] => {
+            (vec![*first, *second], number.parse::<usize>().ok().filter(|number| *number > 0))
+        }
+        _ => (words, Some(0)),
     };
-    for unit in 0..server.views().len() {
-        if let Err(error) = server.apply(unit, WorldAction::SetRts { on }) {
-            return say(format!("Could not set RTS: {error}."));
+    let power = |on| WorldAction::Power { on };
+    let (steps, said) = match words[..] {
+        ["rts", "on"] => {
+            (vec![WorldAction::SetRts { on: true }], "RTS is held: the USB port speaks packet serial.")
+        }
+        ["rts", "off"] => (vec![WorldAction::SetRts { on: false }], "RTS is released."),
+        ["power", "off"] => (vec![power(false)], "The power is off."),
+        ["power", "on"] => (vec![power(true)], "The power is on."),
+        ["power", "cycle"] => (vec![power(false), power(true)], "The power was off for half a second."),
+        [] => return,
+        _ => return say(unknown(line)),
+    };
+    let all = 0..server.views().len();
+    let meant: Vec<usize> = match unit {
+        Some(0) => all.collect(),
+        Some(number) if all.contains(&(number - 1)) => vec![number - 1],
+        Some(_) | None => return say(unknown(line)),
+    };
+    for (index, step) in steps.iter().enumerate() {
+        if index > 0 {
+            thread::sleep(POWER_OFF);
+        }
+        for unit in &meant {
+            if let Err(error) = server.apply(*unit, step.clone()) {
+                return say(format!("Could not do \"{line}\": {error}."));
+            }
         }
     }
-    say(if on { "RTS is held: the USB port speaks packet serial." } else { "RTS is released." });
+    say(said);
+}
+
+fn unknown(line: &str) -> String {
+    format!(
+        "\"{line}\" is no command. There are: rts on, rts off, power off, power on, power cycle; a number behind it means that unit \
+         of several, counted from 1."
+    )
 }

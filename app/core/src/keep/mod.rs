@@ -15,6 +15,7 @@ mod store;
 mod today;
 mod trial;
 mod unit;
+mod updates;
 mod worker;
 
 pub use backups::Backup;
@@ -24,6 +25,7 @@ pub use store::{KeepError, Store};
 pub use today::today;
 pub use trial::TrialKeeper;
 pub use unit::{UnitId, profile_of};
+pub use updates::OpenUpdate;
 pub use worker::Keeping;
 
 #[cfg(test)]

@@ -169,7 +169,7 @@ fn loader_port(ports: &[PortInfo]) -> Result<Option<String>, CoreCauseMessage> {
     }
 }
 
-fn real_path(path: &str) -> String {
+pub(super) fn real_path(path: &str) -> String {
     let real = std::fs::canonicalize(path).ok().and_then(|real| real.to_str().map(str::to_owned));
     real.unwrap_or_else(|| path.to_owned())
 }

@@ -10,7 +10,7 @@ use brushwork_canopen::adapter::Form;
 use brushwork_link::capability::KeepsCapabilities;
 use brushwork_link::device::{Addresses, DeviceHandle, DeviceOptions, DeviceThread, PollRate};
 use brushwork_link::driver::can_line;
-use brushwork_link::transport::{ConnectTarget, OpenError, Stream, Transport, list_ports, ports};
+use brushwork_link::transport::{ConnectTarget, OpenError, PortInfo, Stream, Transport, list_ports, ports};
 use brushwork_link::{Clock, FamilyChoice, HiddenSettings};
 
 use crate::keep::Store;
@@ -54,6 +54,17 @@ pub enum SessionError {
         "Could not look for nodes on the CAN bus: this program has no family of controllers that are nodes."
     )]
     NoNodes,
+    /// The port is that of a controller in its firmware loader.
+    #[error(
+        "{port} is a controller that waits in its firmware loader ({product}), which answers nothing else. Switch it off and on; if it \
+         is still there as {product}, resume its update: brushwork firmware update FILE --connect {port} --resume --model MODEL"
+    )]
+    InLoader {
+        /// The port.
+        port: String,
+        /// What it calls itself on USB.
+        product: String,
+    },
     /// The thread that would own the link.
     #[error("Could not start the thread that owns the link: {0}. Close other programs and try again.")]
     Thread(#[source] std::io::Error),
@@ -70,6 +81,9 @@ pub fn open(
     clock: Arc<dyn Clock>,
     running: Option<Arc<Simulation>>,
 ) -> Result<Session, SessionError> {
+    if let Some(waiting) = loader_of(target, &list_ports().unwrap_or_default()) {
+        return Err(waiting);
+    }
     let (transport, simulation) = connect(target, running)?;
     if let Some((node, form)) = on_can(target, simulation.as_deref()) {
         let options =
@@ -83,6 +97,19 @@ pub fn open(
     };
     let stream = simulation.as_ref().map_or_else(|| stream_of(target), |running| Some(running.stream()));
     spawn(transport, clock, options, stream, simulation)
+}
+
+/// What a target is whose port calls itself a loader on USB.
+fn loader_of(target: &ConnectTarget, ports: &[PortInfo]) -> Option<SessionError> {
+    let ConnectTarget::Serial { path, .. } = target else { return None };
+    let port = ports.iter().find(|port| port.is_loader() && port.name == firmware::real_path(path))?;
+    Some(SessionError::InLoader { port: path.clone(), product: port.product.clone().unwrap_or_default() })
+}
+
+/// What is known of a target at which nobody answers: an update that was begun there and did not end.
+#[must_use]
+pub fn waiting_at(target: &str) -> Option<String> {
+    Store::of_user().update_at(target).map(|update| update.sentence())
 }
 
 /// A line, and the simulated machine behind it if it runs in this program.
@@ -175,4 +202,25 @@ fn spawn(
     };
     let device = DeviceThread::spawn(transport, clock, options).map_err(SessionError::Thread)?;
     Ok(Session { device, simulation })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_port_that_calls_itself_a_loader_is_told_as_one_and_not_opened() {
+        brushwork_link::install(&[&brushwork_mcp_client::McpDriver]);
+        let port = |product: &str| PortInfo {
+            name: "/dev/ttyACM7".to_owned(),
+            is_usb: true,
+            product: Some(product.to_owned()),
+            ..PortInfo::default()
+        };
+        let target: ConnectTarget = "/dev/ttyACM7".parse().unwrap();
+        assert!(loader_of(&target, &[port("MCP266 2x60A")]).is_none());
+        let sentence = loader_of(&target, &[port("MCP266ASTULDR")]).unwrap().to_string();
+        assert!(sentence.contains("waits in its firmware loader (MCP266ASTULDR)"), "{sentence}");
+        assert!(sentence.contains("--connect /dev/ttyACM7 --resume"), "{sentence}");
+    }
 }

@@ -87,7 +87,9 @@ impl App {
         let Some(connection) = self.model.connection_mut(id) else { return };
         let target = connection.phase.target().unwrap_or_default().to_owned();
         connection.phase = Phase::Open { target: target.clone() };
+        let waiting = self.parts.keeping.store().update_at(&target).map(|update| update.sentence());
         connection.link = LinkView::default();
+        connection.link.waiting = waiting;
         connection.settings.keep_in(self.parts.keeping.clone(), ports);
         connection.world.forget();
         let poll = connection.poll;

@@ -30,6 +30,10 @@ impl Host for App {
         Self::disarm(self);
     }
 
+    fn connect_to(&mut self, target: &str) {
+        Self::connect_to(self, target, target.parse());
+    }
+
     fn store(&self) -> Store {
         self.parts.keeping.store().clone()
     }

@@ -25,14 +25,16 @@ impl FamilyAction for FirmwareAction {
 
 /// Takes in what became of an update, in front or not.
 pub fn look_after_firmware(host: &mut dyn Host, id: ConnectionId, ctx: &Context) {
+    let store = host.store();
     let Some(connection) = host.model().connection_mut(id) else { return };
-    let mut next = connection.mcp_mut().firmware.update();
-    if connection.mcp().firmware.stage.is_running() {
+    let is_closed = connection.phase == Phase::Closed;
+    let mut next = connection.mcp_mut().firmware.update(&store, is_closed);
+    if connection.mcp().firmware.stage.is_running() || connection.mcp().firmware.is_awaited() {
         ctx.request_repaint_after(FRAME_INTERVAL);
     }
     let quiet = connection.is_connected() && connection.link.arming == Arming::Disarmed;
     if let (Next::Nothing, Some(identity)) = (&next, connection.link.identity().cloned().filter(|_| quiet)) {
-        next = connection.mcp_mut().firmware.compare(&identity);
+        next = connection.mcp_mut().firmware.compare(&identity, &store);
     }
     match next {
         Next::Nothing => {}
@@ -44,6 +46,7 @@ pub fn look_after_firmware(host: &mut dyn Host, id: ConnectionId, ctx: &Context)
             }
         }
         Next::EnterLoader => enter_loader(host, id),
+        Next::Reconnect(target) => host.connect_to(&target),
     }
 }
 
@@ -61,7 +64,8 @@ fn begin_update(host: &mut dyn Host) -> Result<(), String> {
         let target = target.map_err(|error| error.to_string())?;
         let place = host.loader_place(&target);
         let simulated = matches!(target, ConnectTarget::Sim(_));
-        return host.model().front.mcp_mut().firmware.resume(place, simulated);
+        let store = host.store();
+        return host.model().front.mcp_mut().firmware.resume(&target.to_string(), place, simulated, &store);
     }
     host.disarm();
     let store = host.store();
@@ -70,7 +74,8 @@ fn begin_update(host: &mut dyn Host) -> Result<(), String> {
     let identity = front.link.identity().cloned().ok_or("Connect the controller first.")?;
     let unit = UnitId::new(&identity, &model.devices.ports);
     let (id, stream) = (front.id(), front.link.stream);
-    let job = front.mcp_mut().firmware.begin(&identity, stream, unit, store)?;
+    let place = front.target.clone().unwrap_or_default();
+    let job = front.mcp_mut().firmware.begin(&identity, stream, unit, place, store)?;
     if !host.request_of(id, Request::Job(job)) {
         host.model().front.mcp_mut().firmware.not_entered("the controller is busy.");
     }

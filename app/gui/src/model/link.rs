@@ -78,6 +78,8 @@ pub struct LinkView {
     pub refusals: Vec<Failure>,
     /// What else can drive a motor while something is armed: input pins and scripts, each as a sentence.
     pub warnings: Vec<Message>,
+    /// What is known of this place, should nobody answer: an update that did not end.
+    pub waiting: Option<String>,
     /// The address that the selected unit is about to leave for another.
     moved_from: Option<u8>,
     /// The commands that each unit is known to lack, by its address.
@@ -299,6 +301,9 @@ impl LinkView {
             }
             Some(None) => text += " The screen was armed: make sure that the motors stand still.",
             None => {}
+        }
+        if let Some(waiting) = self.waiting.as_ref().filter(|_| self.units.is_empty()) {
+            text = format!("{text} {waiting}");
         }
         self.arming = Arming::Disarmed;
         vec![Effect::AtRest, Effect::Say(Gravity::Error, text), Effect::Ended]

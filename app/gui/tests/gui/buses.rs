@@ -162,12 +162,13 @@ fn firmware_is_updated_after_the_risks_were_accepted_and_the_settings_are_compar
     assert!(!window.is_enabled("Cancel the update"), "there is no safe way back now");
     window.choose("File", "Exit");
     window.until_text("The window stays open: a firmware update runs");
-    window.until_text("128 pages were sent and confirmed");
+    window.until_text("Waiting for the controller");
+    assert!(!window.texts().iter().any(|text| text.contains("is updated")), "nothing is known yet");
     let store = Store::at(window.folder.path().join("kept"));
     assert_eq!(store.backups(None).len(), 1, "the settings were backed up");
-    window.until_text("Connect it again");
-    // Reconnecting is the user's act.
-    window.click(Role::Button, "Connect");
+    window.until_text(
+        "The firmware is updated: USB Roboclaw 2x7a v4.2.8 before, USB Roboclaw 2x7a v9.8.7 now.",
+    );
     window.until_text("The settings are as they are in the backup.");
     window.until_text("USB Roboclaw 2x7a v9.8.7");
 }
@@ -189,9 +190,7 @@ fn settings_that_differ_after_an_update_are_listed_and_can_be_restored() {
     window.type_path(&path);
     window.click(Role::CheckBox, ACCEPT);
     window.click(Role::Button, "Update the firmware");
-    window.until_text("128 pages were sent and confirmed");
-    window.until_text("Connect it again");
-    window.click(Role::Button, "Connect");
+    window.until_text("The firmware is updated");
     window.until_text("1 setting differs from the backup");
     window.until_text("12345 counts/s in the backup, 44000 counts/s now");
     window.click(Role::Button, "Restore from the backup…");
@@ -227,7 +226,23 @@ fn a_power_failure_is_told_with_what_to_do_and_the_update_is_resumed() {
     window.harness.step();
     window.click(Role::CheckBox, ACCEPT);
     window.click(Role::Button, "Resume the update");
-    window.until_text("128 pages were sent and confirmed");
+    window.until_text("The controller runs USB Roboclaw 2x7a v9.8.7.");
+}
+
+#[test]
+fn an_image_that_leaves_the_old_version_is_no_update() {
+    let mut window = Window::new();
+    window.open(UNIT);
+    window.choose("Device", "Firmware…");
+    let path = window.folder.path().join("noise.bin");
+    let noise: Vec<u8> = (0..0x8000_u32).map(|at| (at.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
+    std::fs::write(&path, noise).unwrap();
+    window.type_path(&path);
+    window.click(Role::CheckBox, ACCEPT);
+    window.click(Role::Button, "Update the firmware");
+    window.until_text(
+        "The version did not change: the controller still calls itself USB Roboclaw 2x7a v4.2.8.",
+    );
 }
 
 #[test]

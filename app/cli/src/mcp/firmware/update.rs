@@ -1,10 +1,11 @@
 //! `brushwork firmware update`: backup, risk, loader, pages.
 
 use std::io::{self, IsTerminal as _, Write as _};
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use brushwork_link::device::RiskAccepted;
+use brushwork_link::device::{PollRate, RiskAccepted};
 use brushwork_link::{ConnectTarget, Event, Request};
 use brushwork_mcp_client::firmware::{Progress, RESUME_NOTE, Sent, risks, suit, suit_model};
 use brushwork_mcp_wire::loader::Image;
@@ -12,11 +13,13 @@ use brushwork_mcp_wire::models;
 use crossbeam_channel::RecvTimeoutError;
 
 use super::args::UpdateArgs;
-use crate::settings::ask;
 use crate::settings::controller::Controller;
+use crate::settings::{ask, backups};
 use crate::{Exit, Interrupt, NewFile, Output, client, say};
-use brushwork_core::keep::Store;
+use brushwork_core::keep::{OpenUpdate, Store};
+use brushwork_core::session::Simulation;
 use brushwork_core::session::firmware::{LoaderPlace, Upload, UploadEvent};
+use brushwork_core::update::{self, Expected, Kept};
 
 /// How long the controller may take to stop its motors and enter the loader.
 const ENTER_LIMIT: Duration = Duration::from_secs(60);
@@ -31,8 +34,10 @@ pub fn run(args: &UpdateArgs, out: &mut Output, interrupt: &Interrupt) -> Result
     if args.resume {
         let image = resumed_image(args, bytes, &target)?;
         accept(args, is_simulated(args, &target), &|| interrupted(interrupt))?;
+        let announced = image.simulated().map(|simulated| simulated.version);
+        let expected = Expected::resumed(&Store::of_user(), &args.connect.connect, announced);
         let sent = send(LoaderPlace::of(&target, None), image, interrupt)?;
-        return done(&sent, None, args, out);
+        return verify(&sent, &expected, None, args, out, interrupt);
     }
     if let Some(path) = &args.backup {
         backup_file(path, args).check()?;
@@ -40,11 +45,35 @@ pub fn run(args: &UpdateArgs, out: &mut Output, interrupt: &Interrupt) -> Result
     let controller = Controller::connect(&args.connect, interrupt)?;
     let image = fresh_image(args, bytes, &controller)?;
     accept(args, is_simulated(args, &target), &|| controller.breathe())?;
-    let backup = back_up(args, &controller, out)?;
-    let place = LoaderPlace::of(&target, controller.client.simulation());
+    let kept = back_up(args, &controller, out)?;
+    let simulation = controller.client.simulation();
+    let place = LoaderPlace::of(&target, simulation.clone());
+    if simulation.is_none() {
+        note(args, &controller, &kept)?;
+    }
+    let expected = Expected {
+        before: Some(controller.identity().version_text.clone()),
+        announced: image.simulated().map(|simulated| simulated.version),
+        kept: Some(kept),
+    };
     enter_loader(&controller, interrupt)?;
+    drop(controller);
     let sent = send(place, image, interrupt)?;
-    done(&sent, Some(&backup), args, out)
+    verify(&sent, &expected, simulation, args, out, interrupt)
+}
+
+/// Keeps that an update was begun here, so that a silent controller is known for what it is.
+fn note(args: &UpdateArgs, controller: &Controller<'_>, kept: &Kept) -> Result<(), Exit> {
+    let begun = OpenUpdate {
+        place: args.connect.connect.clone(),
+        model: kept.profile.subject.model.key.to_owned(),
+        before: controller.identity().version_text.trim().to_owned(),
+        file: args.file.clone(),
+        backup: kept.name.clone(),
+    };
+    Store::of_user()
+        .open_update(&begun)
+        .map_err(|error| Exit::Failed.saying(format!("{error} Nothing was sent.")))
 }
 
 /// The image for a controller that has told who it is.
@@ -105,12 +134,12 @@ fn backup_file<'p>(path: &'p Path, args: &UpdateArgs) -> NewFile<'p> {
 }
 
 /// Reads the settings into a profile. Without a whole backup nothing is erased.
-fn back_up(args: &UpdateArgs, controller: &Controller<'_>, out: &mut Output) -> Result<PathBuf, Exit> {
+fn back_up(args: &UpdateArgs, controller: &Controller<'_>, out: &mut Output) -> Result<Kept, Exit> {
     let report = controller.read()?;
     let exit = if report.is_whole() { Exit::Failed } else { Exit::Refused };
-    let (profile, _) = Store::of_user()
-        .back_up_for_firmware(&controller.unit, controller.identity(), &report)
-        .map_err(|error| exit.saying(format!("{error} Nothing was sent.")))?;
+    let kept = update::keep(&report, controller.identity(), &controller.unit, &Store::of_user())
+        .map_err(|why| exit.saying(format!("{why} Nothing was sent.")))?;
+    let profile = &kept.profile;
     let model = profile.subject.model.key;
     let path = args.backup.clone().unwrap_or_else(|| {
         // Colons do not go into file names everywhere.
@@ -121,7 +150,7 @@ fn back_up(args: &UpdateArgs, controller: &Controller<'_>, out: &mut Output) -> 
         .write(profile.to_json().as_bytes())
         .map_err(|error| Exit::Failed.saying(format!("{error} Nothing was sent.")))?;
     out.line(format!("The settings are backed up in {}.", path.display()))?;
-    Ok(path)
+    Ok(kept)
 }
 
 /// Stops the motors and sends the controller into its loader; ends the link.
@@ -197,16 +226,60 @@ fn tell(progress: Progress, shown: &mut String) {
     }
 }
 
-fn done(sent: &Sent, backup: Option<&Path>, args: &UpdateArgs, out: &mut Output) -> Result<Exit, Exit> {
-    out.line(format!("{} The controller restarts.", sent.sentence()))?;
-    let connect = &args.connect.connect;
-    if let Some(backup) = backup {
-        let backup = backup.display();
-        out.line(format!(
-            "Then compare the settings with the backup, and restore them if you need to:\n  \
-             brushwork settings diff {backup} --connect {connect}\n  \
-             brushwork settings import {backup} --connect {connect}"
-        ))?;
+/// Waits for the controller, and compares its version and its settings with those of before.
+fn verify(
+    sent: &Sent,
+    expected: &Expected,
+    simulation: Option<Arc<Simulation>>,
+    args: &UpdateArgs,
+    out: &mut Output,
+    interrupt: &Interrupt,
+) -> Result<Exit, Exit> {
+    out.line(sent.sentence())?;
+    say("Waiting for the controller to come back.");
+    let target = client::target(&args.connect)?;
+    let options = client::options(&target, &args.connect, PollRate::Off);
+    let back = update::wait_for_return(&target, options, simulation.as_ref(), &|| !interrupt.is_raised());
+    if let Err(why) = back {
+        if interrupt.is_raised() {
+            return Err(Exit::Interrupted);
+        }
+        say(format!(
+            "The controller did not come back, so that nobody knows whether the update is good: {why}"
+        ));
+        return Err(client::with_loader(Exit::NoLink, &args.connect.connect));
     }
-    Ok(Exit::Done)
+    let controller = Controller::connect_to(&args.connect, simulation, interrupt)?;
+    let verdict = expected.verdict(controller.identity());
+    out.line(verdict.sentence())?;
+    let exit = if verdict.is_good() { Exit::Done } else { Exit::NotTaken };
+    let Some(kept) = &expected.kept else { return Ok(exit) };
+    let compared = kept.compare(&controller.read_quietly()?);
+    out.line(compared.sentence())?;
+    out.lines(compared.differences.iter().map(|line| format!("  {line}")))?;
+    if compared.differences.is_empty() {
+        return Ok(exit);
+    }
+    let restored = restore(&controller, kept, args, out)?;
+    Ok(if exit == Exit::Done { restored } else { exit })
+}
+
+/// Writes the backup back where that is wanted; else says how.
+fn restore(
+    controller: &Controller<'_>,
+    kept: &Kept,
+    args: &UpdateArgs,
+    out: &mut Output,
+) -> Result<Exit, Exit> {
+    let question = "Write the settings of the backup back and save them?";
+    let is_wanted =
+        args.restore || (io::stdin().is_terminal() && ask::agreed(question, false, controller).is_ok());
+    if !is_wanted {
+        out.line(format!(
+            "To write them back: brushwork settings restore {} --save --connect {}",
+            kept.name, args.connect.connect
+        ))?;
+        return Ok(Exit::Different);
+    }
+    backups::write_back(controller, &kept.name, out)
 }

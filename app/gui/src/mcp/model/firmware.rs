@@ -3,10 +3,10 @@
 
 use crate::messages::WindowActMessage;
 use std::path::Path;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use brushwork_link::device::{Event, Identity, Job, JobTicket, QueuedJob};
-use brushwork_link::settings::{Profile, ReadReport, Subject, diff, read_all};
+use brushwork_link::settings::{ReadReport, Subject, read_all};
 use brushwork_link::transport::Stream;
 use brushwork_mcp_client::firmware::{Progress, RESUME_NOTE, Sent, Unsuitable, risks, suit, suit_model};
 use brushwork_mcp_wire::loader::Image;
@@ -14,13 +14,18 @@ use brushwork_mcp_wire::models::{self, Model};
 use crossbeam_channel::{Receiver, bounded};
 
 use crate::files::{FileAction, FileAnswer, FileDialog, FileKind};
-use brushwork_core::keep::{Store, UnitId};
+use brushwork_core::keep::{OpenUpdate, Store, UnitId};
 use brushwork_core::session::firmware::{LoaderPlace, Upload, UploadEvent};
+use brushwork_core::update::{self, Compared, Expected, Kept, Verdict};
 
 /// How long reading all settings may take.
 const READ_LIMIT: Duration = Duration::from_secs(120);
 /// No image is larger; a file that is need not be read.
 const LARGEST_FILE_BYTES: u64 = 2_000_000;
+/// How long a line is left alone before the controller is looked for again after its restart.
+const LOOK_INTERVAL: Duration = Duration::from_secs(2);
+/// How often it is looked for by itself.
+const LOOKS: u32 = 15;
 /// Differences from the backup that are listed.
 pub const LISTED: usize = 12;
 
@@ -75,28 +80,24 @@ pub enum Stage {
     Failed(String),
 }
 
-/// A backup that was made.
-#[derive(Debug)]
-pub struct Kept {
-    profile: Profile,
-    title: String,
-}
-
 /// What is compared after an update.
 #[derive(Debug)]
 struct After {
-    kept: Kept,
+    expected: Expected,
+    /// Where the controller was connected.
+    place: String,
+    verdict: Option<Verdict>,
     reading: Option<JobTicket<Result<ReadReport, String>>>,
     compared: Option<Compared>,
+    /// When the last look for the controller began, and how many there were.
+    looked_at: Option<Instant>,
+    looks: u32,
 }
 
-/// How the settings are after an update, against the backup.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Compared {
-    /// A line for each that differs: "M1 QPPS: 44000 counts/s in the backup, 12000 counts/s now".
-    pub differences: Vec<String>,
-    /// Why they could not be compared.
-    pub failure: Option<String>,
+impl After {
+    fn new(expected: Expected, place: String) -> Self {
+        Self { expected, place, verdict: None, reading: None, compared: None, looked_at: None, looks: 0 }
+    }
 }
 
 /// What the window has to do next for a running update.
@@ -106,6 +107,8 @@ pub enum Next {
     Ask(QueuedJob),
     /// Sends the unit into its loader.
     EnterLoader,
+    /// Looks whether the controller is back.
+    Reconnect(String),
     Nothing,
 }
 
@@ -165,6 +168,7 @@ impl Firmware {
         identity: &Identity,
         stream: Option<Stream>,
         unit: UnitId,
+        place: String,
         store: Store,
     ) -> Result<QueuedJob, String> {
         let model = models::identify(&identity.version_text);
@@ -173,13 +177,21 @@ impl Firmware {
             .map_err(|error| format!("The file is not sent: {error}."))?;
         let subject = identity.subject().ok_or("The controller's model is not known.")?;
         let (job, kept) = back_up(identity, subject, unit, store)?;
-        self.after = None;
+        let before = Some(identity.version_text.clone());
+        let announced = image.simulated().map(|simulated| simulated.version);
+        self.after = Some(After::new(Expected { before, announced, kept: None }, place));
         self.stage = Stage::BackingUp { image, kept };
         Ok(job)
     }
 
     /// Begins to send the image to a unit that waits in its loader.
-    pub fn resume(&mut self, place: LoaderPlace, simulated: bool) -> Result<(), String> {
+    pub fn resume(
+        &mut self,
+        target: &str,
+        place: LoaderPlace,
+        simulated: bool,
+        store: &Store,
+    ) -> Result<(), String> {
         let model = self.resumed_model.ok_or("Choose the model that waits in its loader.")?;
         let image = suit_model(self.file()?, model, simulated).map_err(|error| {
             if error == Unsuitable::OnlySimulated {
@@ -187,6 +199,8 @@ impl Firmware {
             }
             format!("The file is not sent: {error}.")
         })?;
+        let announced = image.simulated().map(|simulated| simulated.version);
+        self.after = Some(After::new(Expected::resumed(store, target, announced), target.to_owned()));
         self.send(image, place);
         Ok(())
     }
@@ -252,8 +266,8 @@ impl Firmware {
         }
     }
 
-    /// Takes in what happened since the last frame.
-    pub fn update(&mut self) -> Next {
+    /// Takes in what happened since the last frame; `is_closed` while no link is open or being opened.
+    pub fn update(&mut self, store: &Store, is_closed: bool) -> Next {
         if let Some(dialog) = &self.dialog {
             match dialog.answer() {
                 FileAnswer::Waiting => {}
@@ -268,8 +282,16 @@ impl Firmware {
         match &mut self.stage {
             Stage::BackingUp { kept, .. } => match kept.try_recv() {
                 Ok(Ok(kept)) => {
-                    self.after = Some(After { kept, reading: None, compared: None });
-                    Next::EnterLoader
+                    if let Some(after) = &mut self.after {
+                        after.expected.kept = Some(kept);
+                    }
+                    match self.note_begun(store) {
+                        Ok(()) => Next::EnterLoader,
+                        Err(why) => {
+                            self.not_entered(&why);
+                            Next::Nothing
+                        }
+                    }
                 }
                 Ok(Err(why)) => {
                     self.not_entered(&why);
@@ -293,15 +315,62 @@ impl Firmware {
                 }
                 Next::Nothing
             }
+            Stage::Done(_) if is_closed => self.look_again(),
             Stage::Idle | Stage::Entering { .. } | Stage::Done(_) | Stage::Failed(_) => Next::Nothing,
         }
     }
 
-    /// The unit is connected again: its settings are compared with the backup once.
-    pub fn compare(&mut self, identity: &Identity) -> Next {
+    /// Keeps that an update was begun at this place, so that a silent controller is known for what it is.
+    fn note_begun(&self, store: &Store) -> Result<(), String> {
+        let Some((after, kept)) =
+            self.after.as_ref().and_then(|after| Some((after, after.expected.kept.as_ref()?)))
+        else {
+            return Ok(());
+        };
+        if after.place.starts_with("sim:") {
+            return Ok(());
+        }
+        let begun = OpenUpdate {
+            place: after.place.clone(),
+            model: kept.profile.subject.model.key.to_owned(),
+            before: after.expected.before.clone().unwrap_or_default().trim().to_owned(),
+            file: Path::new(self.path.trim()).to_owned(),
+            backup: kept.name.clone(),
+        };
+        store.open_update(&begun).map_err(|error| error.to_string())
+    }
+
+    /// The image was sent and nobody is connected: whether the controller is to be looked for now.
+    fn look_again(&mut self) -> Next {
+        let Some(after) = self.after.as_mut().filter(|after| after.verdict.is_none() && after.looks < LOOKS)
+        else {
+            return Next::Nothing;
+        };
+        let now = Instant::now();
+        let since = *after.looked_at.get_or_insert(now);
+        if now.saturating_duration_since(since) < LOOK_INTERVAL {
+            return Next::Nothing;
+        }
+        after.looked_at = Some(now);
+        after.looks += 1;
+        Next::Reconnect(after.place.clone())
+    }
+
+    /// Whether the controller is still looked for.
+    pub fn is_awaited(&self) -> bool {
+        let is_done = matches!(self.stage, Stage::Done(_));
+        self.after.as_ref().is_some_and(|after| is_done && after.verdict.is_none() && after.looks < LOOKS)
+    }
+
+    /// The unit is connected again: its version is compared, and its settings with the backup once.
+    pub fn compare(&mut self, identity: &Identity, store: &Store) -> Next {
         let is_done = matches!(self.stage, Stage::Done(_));
         let Some(after) = self.after.as_mut().filter(|_| is_done) else { return Next::Nothing };
-        if after.reading.is_some() || after.compared.is_some() {
+        if after.verdict.is_none() {
+            store.close_update(&after.place);
+            after.verdict = Some(after.expected.verdict(identity));
+        }
+        if after.reading.is_some() || after.compared.is_some() || after.expected.kept.is_none() {
             return Next::Nothing;
         }
         let Some(subject) = identity.subject() else { return Next::Nothing };
@@ -327,16 +396,22 @@ impl Firmware {
 
     /// What the backup is called.
     pub fn backup(&self) -> Option<&str> {
-        self.after.as_ref().map(|after| after.kept.title.as_str())
+        self.after.as_ref()?.expected.kept.as_ref().map(|kept| kept.title.as_str())
+    }
+
+    /// What the controller says of itself after the update, once it is connected again.
+    pub fn verdict(&self) -> Option<&Verdict> {
+        self.after.as_ref()?.verdict.as_ref()
     }
 
     fn take_comparison(&mut self) {
         let Some(after) = &mut self.after else { return };
         let Some(read) = after.reading.as_ref().and_then(JobTicket::take) else { return };
-        after.compared = Some(match read {
-            Ok(report) => compare(&after.kept.profile, &report),
-            Err(why) => Compared { differences: Vec::new(), failure: Some(why) },
-        });
+        after.compared = match (read, &after.expected.kept) {
+            (Ok(report), Some(kept)) => Some(kept.compare(&report)),
+            (Ok(_), None) => None,
+            (Err(why), _) => Some(Compared { differences: Vec::new(), failure: Some(why) }),
+        };
     }
 
     fn send(&mut self, image: Image, place: LoaderPlace) {
@@ -369,7 +444,7 @@ fn back_up(
     let identity = identity.clone();
     let keep = move || {
         let report = to_keep.recv_timeout(READ_LIMIT).map_err(|_| "The settings were not read.".to_owned());
-        let done = report.and_then(|report| keep(&report?, &identity, &unit, &store));
+        let done = report.and_then(|report| update::keep(&report?, &identity, &unit, &store));
         // Whoever closed the window does not want it any more.
         let _ = sender.send(done);
     };
@@ -383,28 +458,4 @@ fn back_up(
     });
     // What was read goes to the thread that keeps it.
     Ok((job.queued().0, kept))
-}
-
-fn keep(report: &ReadReport, identity: &Identity, unit: &UnitId, store: &Store) -> Result<Kept, String> {
-    let kept = store.back_up_for_firmware(unit, identity, report);
-    let (profile, backup) = kept.map_err(|error| match report.unread().next() {
-        Some(unread) => format!("{error} {}", unread.failure),
-        None => error.to_string(),
-    })?;
-    Ok(Kept { profile, title: backup.title() })
-}
-
-fn compare(profile: &Profile, report: &ReadReport) -> Compared {
-    let fitted = profile.fitted_to(&report.table).profile.settings;
-    let reported = diff(&report.table, &fitted, &report.image).into_iter().filter_map(|difference| {
-        let row = report.table.row(&difference.key)?;
-        let text = |value: Option<_>| value.map_or("nothing".to_owned(), |value| row.format(value));
-        Some(format!(
-            "{}: {} in the backup, {} now",
-            row.title(),
-            text(difference.left),
-            text(difference.right)
-        ))
-    });
-    Compared { differences: reported.collect(), failure: None }
 }

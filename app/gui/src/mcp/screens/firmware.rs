@@ -13,6 +13,7 @@ use crate::mcp::model::firmware::{Firmware, FirmwareAction, LISTED, Stage};
 use crate::model::{Model, Sheet};
 use crate::theme::Palette;
 use crate::widgets::{choice_ui, heading_ui, text_field_ui};
+use brushwork_core::update::Compared;
 use brushwork_core::words::capital;
 
 /// Draws the window, if it is open, within `room`.
@@ -166,35 +167,41 @@ fn running_ui(ui: &mut Ui, stage: &Stage, commands: &mut Commands) {
 }
 
 fn done_ui(ui: &mut Ui, text: &str, firmware: &Firmware, connected: bool, commands: &mut Commands) {
-    ui.strong(text);
+    match firmware.verdict() {
+        Some(verdict) if verdict.is_good() => drop(ui.strong(verdict.sentence())),
+        Some(verdict) => drop(ui.label(RichText::new(verdict.sentence()).color(Palette::of(ui).error))),
+        None if firmware.is_awaited() => {
+            ui.strong("The image was sent. Waiting for the controller: whether the update is good shows when it answers.");
+        }
+        None => drop(ui.label(
+            RichText::new(
+                "The image was sent, and the controller did not come back: nobody knows whether the update is good. Switch it off and \
+                 on, then connect. If it does not answer, resume the update.",
+            )
+            .color(Palette::of(ui).error),
+        )),
+    }
+    ui.weak(text);
     if let Some(backup) = firmware.backup() {
         ui.weak(format!("The settings from before are kept: {backup}."));
     }
     match firmware.compared() {
-        None if connected => drop(ui.weak("Comparing the settings with the backup.")),
-        None => drop(ui.weak(
-            "The controller restarts. Connect it again; its settings are then compared with the backup.",
-        )),
-        Some(compared) => {
-            if let Some(why) = &compared.failure {
-                ui.weak(why);
-            } else if compared.differences.is_empty() {
-                ui.label("The settings are as they are in the backup.");
-            } else {
-                differences_ui(ui, &compared.differences, commands);
-            }
+        None if connected && firmware.backup().is_some() => {
+            ui.weak("Comparing the settings with the backup.");
         }
+        None => {}
+        Some(compared) if compared.differences.is_empty() => drop(ui.label(compared.sentence())),
+        Some(compared) => differences_ui(ui, compared, commands),
     }
     if ui.button("Back").clicked() {
         commands.push(Command::own(FirmwareAction::Dismiss));
     }
 }
 
-fn differences_ui(ui: &mut Ui, differences: &[String], commands: &mut Commands) {
-    let count = differences.len();
-    let noun = if count == 1 { "setting differs" } else { "settings differ" };
-    ui.label(RichText::new(format!("{count} {noun} from the backup:")).color(Palette::of(ui).warning));
-    for line in differences.iter().take(LISTED) {
+fn differences_ui(ui: &mut Ui, compared: &Compared, commands: &mut Commands) {
+    let count = compared.differences.len();
+    ui.label(RichText::new(compared.sentence()).color(Palette::of(ui).warning));
+    for line in compared.differences.iter().take(LISTED) {
         ui.label(line);
     }
     if count > LISTED {

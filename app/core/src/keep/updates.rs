@@ -1,0 +1,106 @@
+//! Firmware updates that were begun: kept until a controller answers at that place again, so that a silent line is not taken for a
+//! wrong baud rate.
+
+use std::fs;
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+
+use super::store::{KeepError, Store};
+
+const FOLDER: &str = "updates";
+/// Longer names of files are cut; the text inside tells two that agree so far apart.
+const LONGEST_NAME: usize = 80;
+
+/// An update that was begun.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct OpenUpdate {
+    /// Where the controller was connected, as typed.
+    pub place: String,
+    /// The key of its model.
+    pub model: String,
+    /// The text of the version that it ran.
+    pub before: String,
+    /// The image that was sent.
+    pub file: PathBuf,
+    /// The backup of its settings.
+    pub backup: String,
+}
+
+impl OpenUpdate {
+    /// What to know when nobody answers at its place.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        format!(
+            "An update of the {} at {} was begun and did not end. It may wait in its firmware loader, where it answers nothing else \
+             (STAT1 and STAT2 light in turns). Switch it off and on; if it still does not answer, resume the update: \
+             brushwork firmware update {} --connect {} --resume --model {}. Its settings are in the backup {}.",
+            self.before,
+            self.place,
+            self.file.display(),
+            self.place,
+            self.model,
+            self.backup
+        )
+    }
+}
+
+impl Store {
+    /// Keeps it until it is closed.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn open_update(&self, update: &OpenUpdate) -> Result<(), KeepError> {
+        let path = self.update_path(&update.place)?;
+        self.put(&path, &serde_json::to_string_pretty(update).unwrap_or_default())
+    }
+
+    /// The update that was begun at a place and did not end, if there is one.
+    #[must_use]
+    pub fn update_at(&self, place: &str) -> Option<OpenUpdate> {
+        let text = fs::read_to_string(self.update_path(place).ok()?).ok()?;
+        let update: OpenUpdate = serde_json::from_str(&text).ok()?;
+        (update.place == place).then_some(update)
+    }
+
+    /// A controller answers there again.
+    pub fn close_update(&self, place: &str) {
+        if let Some(path) = self.update_at(place).and_then(|_| self.update_path(place).ok()) {
+            // What stays is told once more when nobody answers, which is true then too.
+            let _ = fs::remove_file(path);
+        }
+    }
+
+    fn update_path(&self, place: &str) -> Result<PathBuf, KeepError> {
+        let safe = |letter: char| if letter.is_ascii_alphanumeric() || letter == '.' { letter } else { '-' };
+        let name: String = place.chars().map(safe).take(LONGEST_NAME).collect();
+        self.path(&[FOLDER, &format!("update-{name}.json")])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_update_is_known_at_its_place_until_it_is_closed() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::at(folder.path());
+        let update = OpenUpdate {
+            place: "/dev/ttyACM0".to_owned(),
+            model: "mcp266".to_owned(),
+            before: "MCP266 2x60A v1.0.0".to_owned(),
+            file: PathBuf::from("new.bin"),
+            backup: "000001".to_owned(),
+        };
+        store.open_update(&update).unwrap();
+        assert_eq!(store.update_at("/dev/ttyACM0"), Some(update.clone()));
+        assert_eq!(store.update_at("/dev-ttyACM0"), None, "the same file, another place");
+        let sentence = update.sentence();
+        assert!(sentence.contains("--connect /dev/ttyACM0 --resume --model mcp266"), "{sentence}");
+        store.close_update("/dev-ttyACM0");
+        assert!(store.update_at("/dev/ttyACM0").is_some());
+        store.close_update("/dev/ttyACM0");
+        assert_eq!(store.update_at("/dev/ttyACM0"), None);
+    }
+}
