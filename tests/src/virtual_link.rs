@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use brushwork_canopen::adapter::Form;
+use brushwork_canopen::bus::Monitor;
 use brushwork_core::session::line::SimulatedLine;
 use brushwork_family::Started;
 use brushwork_link::device::{
@@ -12,7 +13,7 @@ use brushwork_link::device::{
     Request, Step, StopReport,
 };
 use brushwork_link::{Clock, Transport, TransportError};
-use brushwork_mcp_client::can::{BusTransport, CanOpen, Monitor};
+use brushwork_mcp_client::can::{BusTransport, CanOpen};
 use brushwork_mcp_sim::controller::{Bus, UnitView};
 use brushwork_plant::faults::{Fault, Faulty};
 use brushwork_plant::machine::{Machine, StreamIndex};

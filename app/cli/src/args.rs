@@ -135,6 +135,9 @@ pub struct NodesArgs {
     /// The adapter: can:PORT[,baud=115200,form=ascii|binary], or simulated nodes.
     #[arg(long, short = 'c', value_name = "TARGET", default_value = examples::bus())]
     pub connect: String,
+    /// Start this node first, which is stopped or pre-operational: an NMT command to it alone.
+    #[arg(long, value_name = "NODE", value_parser = clap::value_parser!(u8).range(1..=127))]
+    pub start: Option<u8>,
     /// Print JSON.
     #[arg(long)]
     pub json: bool,

@@ -1,63 +1,50 @@
-//! `brushwork nodes`: who is on a CANopen bus.
+//! `brushwork nodes`: who is on a CANopen bus, and starting a node that stands.
 
-use std::time::{Duration, Instant};
-
-use brushwork_link::{Event, Identity, PollRate, SystemClock};
-use serde_json::json;
+use brushwork_canopen::NodeId;
+use brushwork_canopen::bus::Who;
+use brushwork_link::ConnectTarget;
 
 use super::args::NodesArgs;
-use super::client::next_event;
-use super::{Exit, Interrupt, Output};
-use brushwork_core::session::{self, SessionOptions};
+use super::{Exit, Interrupt, Output, say};
+use brushwork_core::session::bus::{self, BusList, Started};
 
-/// How long the search may take: all node ids are asked at once, and each that answers is then identified.
-const SEARCH_LIMIT: Duration = Duration::from_secs(60);
-
-/// Searches and prints.
+/// Starts a node if that is asked for, then searches and prints.
 pub fn run(args: &NodesArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
-    let target = args.connect.parse().map_err(|error| {
+    let target: ConnectTarget = args.connect.parse().map_err(|error| {
         Exit::Usage.saying(format!("Could not understand --connect {}: {error}.", args.connect))
     })?;
-    let options = SessionOptions { poll: PollRate::Off, ..SessionOptions::default() };
-    let session = session::open(&target, options, SystemClock::shared(), None)
-        .map_err(|error| Exit::NoLink.saying(error))?;
-    let deadline = Instant::now() + SEARCH_LIMIT;
-    let mut nodes: Vec<Identity> = Vec::new();
-    while Instant::now() < deadline {
-        match next_event(&session.device, interrupt)? {
-            Some(Event::Connected(identity)) => nodes.push(identity),
-            Some(Event::Selected { .. }) => return print(args, &nodes, out),
-            _ => {}
+    if let Some(node) = args.start {
+        let node = NodeId::new(node).ok_or(Exit::Usage)?;
+        let started = bus::start(&target, None, node).map_err(|sentence| Exit::NoLink.saying(sentence))?;
+        say(started.sentence(node));
+        if matches!(started, Started::Still(_)) {
+            return Err(Exit::Refused);
         }
     }
-    Err(Exit::NoLink.saying(format!(
-        "Could not list the nodes: the search did not end within {} s.",
-        SEARCH_LIMIT.as_secs()
-    )))
+    let list = bus::look(&target, &|| !interrupt.is_raised());
+    if interrupt.is_raised() {
+        return Err(Exit::Interrupted);
+    }
+    print(args, &list.map_err(|sentence| Exit::NoLink.saying(sentence))?, out)
 }
 
-fn print(args: &NodesArgs, nodes: &[Identity], out: &mut Output) -> Result<Exit, Exit> {
-    if !nodes.iter().all(Identity::is_node) {
-        return Err(Exit::Usage.saying(format!(
-            "{} is no CAN adapter. Write can: in front of an adapter's port.",
-            args.connect
-        )));
-    }
+fn print(args: &NodesArgs, list: &BusList, out: &mut Output) -> Result<Exit, Exit> {
     if args.json {
-        out.json(&json!({ "nodes": nodes }))?;
-        return Ok(Exit::Done);
+        out.json(list)?;
+    } else if !list.nodes.is_empty() {
+        let rows: Vec<Vec<String>> = list
+            .nodes
+            .iter()
+            .map(|view| {
+                vec![view.node.get().to_string(), view.state_text(), view.heartbeat_text(), view.who_text()]
+            })
+            .collect();
+        out.table(&["NODE", "STATE", "HEARTBEAT", "WHO"], &rows)?;
+        out.lines(&list.emergencies)?;
     }
-    let rows: Vec<Vec<String>> = nodes
-        .iter()
-        .map(|node| {
-            vec![
-                node.address.to_string(),
-                node.version_text.clone(),
-                node.generation.number().to_string(),
-                node.notes.iter().map(ToString::to_string).collect::<Vec<_>>().join(" "),
-            ]
-        })
-        .collect();
-    out.table(&["NODE", "CONTROLLER", "GENERATION", "WHAT IT TELLS"], &rows)?;
-    Ok(Exit::Done)
+    if let Some(failure) = &list.failure {
+        return Err(Exit::NoLink.saying(failure));
+    }
+    let is_doubled = list.nodes.iter().any(|view| view.who == Who::Several);
+    Ok(if is_doubled { Exit::Refused } else { Exit::Done })
 }

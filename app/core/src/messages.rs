@@ -1,5 +1,6 @@
 //! What window and command line say alike, in its words: one table for each theme.
 
+use brushwork_canopen::NodeId;
 use brushwork_link::Message;
 use brushwork_values::{Motor, messages};
 
@@ -19,6 +20,7 @@ messages! {
         Tune "tune the motor",
         TryGains "try the gains",
         PutBack "put back what the tuning changed",
+        StartNode { node: NodeId } "start {node}",
         OpenLoader "open the line to the firmware loader",
     }
 }
@@ -62,6 +64,7 @@ messages! {
         AllowTravel "Allow more travel if there is room, or enter an estimated QPPS by hand",
         AllowTime "Allow more time, or take load off the motor",
         LookAtShaft "Look whether the shaft is blocked or the encoder has lost its plug",
+        CheckAdapter "Check the adapter's cable",
         SeeLimits "A limit of current, voltage or temperature holds it back: see the indicators and General Settings",
         TuneLoop "Tune the position loop, or widen its deadzone",
         GoFaster "Go faster, or choose points that are nearer",

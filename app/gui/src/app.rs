@@ -146,6 +146,7 @@ impl App {
         if let Some(listed) = self.parts.ports.newest() {
             self.model.devices.set_ports(listed);
         }
+        self.take_started(ctx);
         for connection in self.links.ids() {
             self.finish_opening(connection, ctx);
             self.drain(connection);
@@ -339,6 +340,7 @@ impl App {
             Command::Theme(theme) => model.appearance.theme = theme,
             Command::PlainEdges(plain) => model.appearance.plain = plain,
             Command::Scale(percent) => model.appearance.set_scale(percent),
+            Command::StartNode(node) => self.start_node(node),
             Command::OpenCanOpen => model.canopen.show(&model.devices.ports),
             Command::Graph(action) => model.front.graph.act(action),
             Command::PauseTraffic(paused) => model.front.traffic.log.set_paused(paused),

@@ -1,5 +1,6 @@
 //! What a person can ask of the window. Screens send commands; [`super::app::App`] applies them in one place.
 
+use brushwork_canopen::NodeId;
 use std::rc::Rc;
 
 use brushwork_link::{ArmScope, PollRate, Stream};
@@ -79,6 +80,8 @@ pub enum Command {
     OpenFirmware,
     /// Opens the window for connecting to a CANopen bus.
     OpenCanOpen,
+    /// Starts a node of the CAN bus in front.
+    StartNode(NodeId),
     ToggleWorld,
     /// Shows a screen that drives, with this tab of its drawer open.
     OpenDrawer(Screen, Tab),

@@ -115,7 +115,7 @@ impl Opener for SessionOpener {
                     running.push(Arc::downgrade(simulation));
                 }
                 let world = session.simulation.map(|simulation| simulation as Arc<dyn SimulatedWorld>);
-                OpenLink { device: session.device, world }
+                OpenLink { device: session.device, bus: session.bus, world }
             });
             // Whoever gave up waiting has dropped the receiver; the link is closed again by being dropped.
             let _ = sender.send(opened);

@@ -4,6 +4,7 @@
 
 use std::sync::Arc;
 
+use brushwork_canopen::bus::Monitor;
 use brushwork_link::{Addresses, ConnectTarget, DeviceHandle, Failure, PortInfo};
 use brushwork_plant::server::Pace;
 use brushwork_plant::world::{WorldAction, WorldView};
@@ -46,6 +47,8 @@ pub trait Opener {
 /// An open link.
 pub struct OpenLink {
     pub device: DeviceHandle,
+    /// What is heard of the nodes, on a CAN bus.
+    pub bus: Option<Monitor>,
     /// The world of the controllers that are simulated in this program. It lives on when the link ends, so that a
     /// cable that was pulled out can be put back.
     pub world: Option<Arc<dyn SimulatedWorld>>,

@@ -6,7 +6,8 @@ use brushwork_canopen::NodeId;
 use brushwork_canopen::adapter::Form;
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_plant::server::{Endpoint, Server, ServerOptions, SimHandle};
-use serde_json::Value;
+use serde_json::{Value, json};
+use std::io::Write as _;
 use tempfile::TempDir;
 
 fn brushwork(arguments: &[&str]) -> Run {
@@ -35,10 +36,10 @@ fn nodes_behind_either_form_of_adapter_are_listed_with_their_identity() {
         let run = brushwork(&["nodes", "--json", "--connect", &target]);
         assert_eq!(run.code, 0, "{run:?}");
         let json: Value = serde_json::from_str(&run.stdout).unwrap();
-        let ids: Vec<_> =
-            json["nodes"].as_array().unwrap().iter().map(|node| node["address"].clone()).collect();
+        let ids: Vec<_> = json["nodes"].as_array().unwrap().iter().map(|node| node["node"].clone()).collect();
         assert_eq!(ids, [3, 17], "{form:?}");
-        assert_eq!(json["nodes"][0]["model"], "MCP266");
+        let who = json!({ "kind": "controller", "text": "MCP266 2x60A v1.0.0" });
+        assert_eq!((&json["nodes"][0]["who"], &json["nodes"][0]["state"]), (&who, &json!("pre_operational")));
     }
 }
 
@@ -82,4 +83,34 @@ fn firmware_is_not_updated_over_can() {
     let run = brushwork(&["firmware", "update", &image, "-c", "sim:mcp266,can", "--accept-risk"]);
     assert_eq!(run.code, 4, "{run:?}");
     assert!(run.stderr.contains("connect over USB"), "{run:?}");
+}
+
+#[test]
+fn a_stopped_node_is_listed_with_what_to_do_and_started_when_that_is_asked_for() {
+    let (server, folder, target) = served(Form::Ascii, &[3]);
+    let adapter = folder.path().join("adapter");
+    std::fs::OpenOptions::new().write(true).open(&adapter).unwrap().write_all(b":S000N0203;").unwrap();
+    let run = brushwork(&["status", "--connect", &format!("{target},node=3")]);
+    assert_eq!(run.code, 3, "{run:?}");
+    assert!(run.stderr.contains("node 3 is stopped") && run.stderr.contains("nodes --start 3"), "{run:?}");
+    let run = brushwork(&["nodes", "--connect", &target]);
+    assert_eq!(run.code, 3, "{run:?}");
+    assert!(run.stdout.contains("stopped: it answers nothing until it is started"), "{run:?}");
+    let run = brushwork(&["nodes", "--start", "3", "--connect", &target]);
+    assert_eq!(run.code, 0, "{run:?}");
+    assert!(run.stderr.contains("node 3 says that it is operational"), "{run:?}");
+    assert!(run.stdout.contains("operational") && run.stdout.contains("MCP266 2x60A v1.0.0"), "{run:?}");
+    drop(server);
+}
+
+#[test]
+fn nodes_of_other_makers_and_doubled_numbers_are_listed() {
+    let (server, _folder, target) = served(Form::Ascii, &[3, 4, 4]);
+    server.inspect(|bus| bus.add_other_node(NodeId::new(9).unwrap())).unwrap();
+    let run = brushwork(&["nodes", "--connect", &target]);
+    assert_eq!(run.code, 4, "{run:?}");
+    assert!(run.stdout.contains("another device (Another drive): never written to"), "{run:?}");
+    assert!(run.stdout.contains("several devices answer as this node"), "{run:?}");
+    let written = server.inspect(|bus| bus.other_nodes()[0].written().len()).unwrap();
+    assert_eq!(written, 0);
 }

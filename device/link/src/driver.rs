@@ -10,6 +10,7 @@ use crate::family::{self, FamilyRef};
 use crate::settings::FamilySettings;
 use crate::transport::Transport;
 use brushwork_canopen::adapter::Form;
+use brushwork_canopen::bus::Monitor;
 use std::sync::{Arc, PoisonError, RwLock};
 
 /// A family of controllers as it is spoken with.
@@ -39,8 +40,15 @@ pub trait Driver: Send + Sync {
     }
 }
 
-/// A line to nodes, and what finds them.
-pub type CanLine = (Box<dyn Transport>, Box<dyn Search>);
+/// A line to the nodes of a bus.
+pub struct CanLine {
+    /// The line.
+    pub transport: Box<dyn Transport>,
+    /// What finds them.
+    pub search: Box<dyn Search>,
+    /// What is heard of them.
+    pub monitor: Monitor,
+}
 
 /// The line to the nodes of a CAN bus, for the first family that has some.
 #[must_use]

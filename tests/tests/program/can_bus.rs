@@ -4,6 +4,7 @@
 use brushwork_tests::said::Said;
 use std::time::Duration;
 
+use brushwork_canopen::NodeId;
 use brushwork_canopen::adapter::Form;
 use brushwork_link::device::{
     Addresses, ArmScope, Channel, DeviceOptions, DisarmReason, Drive, DriveCommand, Event, Identity, Job,
@@ -327,5 +328,66 @@ fn on_a_noisy_line_nothing_is_driven_unasked() {
             link.run_for(ms(1500));
             assert_eq!(link.duties(0), [0.0, 0.0], "seed {seed}: {:?}", link.events);
         }
+    }
+}
+
+/// What a search that found nobody said.
+fn lost(link: &VirtualLink) -> String {
+    let lost = link.events.iter().find_map(|(_, event)| match event {
+        Event::Lost(failure) => Some(failure.to_string()),
+        _ => None,
+    });
+    lost.unwrap_or_default()
+}
+
+#[test]
+fn a_node_that_is_stopped_is_told_as_such_with_what_to_do() {
+    for addresses in [Addresses::Scan, Addresses::Only(3)] {
+        let mut bus = bus(Generation::Gen1, &[3], Form::Ascii);
+        bus.receive(StreamIndex::Usb, b":S000N0203;"); // NMT: stop, node 3
+        let mut link = VirtualLink::on_can(
+            bus,
+            Form::Ascii,
+            DeviceOptions { addresses, ..options(true) },
+            Vec::new(),
+            1,
+        );
+        link.run_for(Duration::from_secs(5));
+        let sentence = lost(&link);
+        assert!(sentence.contains("node 3 is stopped"), "{addresses:?}: {sentence}");
+        assert!(sentence.contains("brushwork nodes --start 3"), "{sentence}");
+    }
+}
+
+#[test]
+fn a_foreign_node_is_never_written_to_not_even_by_a_stop_at_any_moment_of_the_search() {
+    for moment in (0..40).map(|step| ms(step * 50)) {
+        let mut bus = bus(Generation::Gen1, &[3], Form::Ascii);
+        bus.add_other_node(NodeId::new(9).unwrap());
+        let mut link = VirtualLink::on_can(bus, Form::Ascii, options(false), Vec::new(), 1);
+        link.at(moment, brushwork_link::device::DeviceHandle::stop_all);
+        link.run_for(Duration::from_secs(8));
+        let found: Vec<u8> = identities(&link).iter().map(|unit| unit.address).collect();
+        assert_eq!(found, [3], "{moment:?}");
+        assert!(link.stops().last().is_some_and(|stop| stop.confirmed()), "{moment:?}");
+        assert!(link.bus(|bus| bus.other_nodes()[0].written().is_empty()), "{moment:?}");
+    }
+}
+
+#[test]
+fn two_controllers_with_one_number_are_told_and_neither_is_written_to() {
+    for addresses in [Addresses::Scan, Addresses::Only(3)] {
+        let bus = bus(Generation::Gen1, &[3, 3], Form::Ascii);
+        let mut link = VirtualLink::on_can(
+            bus,
+            Form::Ascii,
+            DeviceOptions { addresses, ..options(true) },
+            Vec::new(),
+            1,
+        );
+        link.run_for(Duration::from_secs(5));
+        assert!(identities(&link).is_empty());
+        let sentence = lost(&link);
+        assert!(sentence.contains("several devices answer as node 3"), "{addresses:?}: {sentence}");
     }
 }

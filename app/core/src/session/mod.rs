@@ -7,14 +7,16 @@ use std::sync::Arc;
 
 use brushwork_canopen::NodeId;
 use brushwork_canopen::adapter::Form;
+use brushwork_canopen::bus::Monitor;
 use brushwork_link::capability::KeepsCapabilities;
 use brushwork_link::device::{Addresses, DeviceHandle, DeviceOptions, DeviceThread, PollRate};
-use brushwork_link::driver::can_line;
+use brushwork_link::driver::{CanLine, can_line};
 use brushwork_link::transport::{ConnectTarget, OpenError, PortInfo, Stream, Transport, list_ports, ports};
 use brushwork_link::{Clock, FamilyChoice, HiddenSettings};
 
 use crate::keep::Store;
 
+pub mod bus;
 pub mod firmware;
 pub mod line;
 pub mod simulation;
@@ -27,6 +29,8 @@ pub struct Session {
     pub device: DeviceHandle,
     /// The simulated machine behind it, if it runs in this program. It lives on as long as somebody holds it.
     pub simulation: Option<Arc<Simulation>>,
+    /// What is heard of the nodes, on a CAN bus.
+    pub bus: Option<Monitor>,
 }
 
 /// How a link is opened.
@@ -164,9 +168,10 @@ fn spawn_on_can(
         capabilities: keeper(simulation.as_deref()),
         ..DeviceOptions::default()
     };
-    let (line, nodes) = can_line(transport, &clock, form).ok_or(SessionError::NoNodes)?;
-    let device = DeviceThread::spawn_family(line, clock, options, nodes);
-    Ok(Session { device: device.map_err(SessionError::Thread)?, simulation })
+    let CanLine { transport, search, monitor } =
+        can_line(transport, &clock, form).ok_or(SessionError::NoNodes)?;
+    let device = DeviceThread::spawn_family(transport, clock, options, search);
+    Ok(Session { device: device.map_err(SessionError::Thread)?, simulation, bus: Some(monitor) })
 }
 
 /// The stream of the controller that a port is wired to: as the user said, or as the port's name tells.
@@ -201,7 +206,7 @@ fn spawn(
         ..DeviceOptions::default()
     };
     let device = DeviceThread::spawn(transport, clock, options).map_err(SessionError::Thread)?;
-    Ok(Session { device, simulation })
+    Ok(Session { device, simulation, bus: None })
 }
 
 #[cfg(test)]

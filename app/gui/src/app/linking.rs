@@ -1,10 +1,12 @@
 //! Links as the window opens, brings to the front and ends them.
 
 use crate::messages::{WindowActMessage, WindowRemedyMessage};
+use brushwork_canopen::{NodeId, nmt};
+use brushwork_core::session::bus;
 use brushwork_link::Message;
 use brushwork_link::transport::TargetError;
 use brushwork_link::{ConnectTarget, Failure, PollRate, Request};
-use crossbeam_channel::TryRecvError;
+use crossbeam_channel::{TryRecvError, bounded};
 use egui::Context;
 
 use super::{App, OPENING_INTERVAL, waker};
@@ -90,6 +92,7 @@ impl App {
         let waiting = self.parts.keeping.store().update_at(&target).map(|update| update.sentence());
         connection.link = LinkView::default();
         connection.link.waiting = waiting;
+        connection.bus = opened.bus;
         connection.settings.keep_in(self.parts.keeping.clone(), ports);
         connection.world.forget();
         let poll = connection.poll;
@@ -155,5 +158,43 @@ impl App {
         self.links.remove(id);
         self.model.remove_connection(id);
         self.model.devices.choose_connection(&self.model.front);
+    }
+
+    /// Starts a node of the bus in front, by one NMT command: over the open link, or over the adapter by itself.
+    pub(super) fn start_node(&mut self, node: NodeId) {
+        let front = &self.model.front;
+        if let Some(bus) = front.bus.as_ref().filter(|_| front.phase.is_open()) {
+            bus.command(nmt::Command::Start, node);
+            return self
+                .model
+                .messages
+                .note(format!("The start was sent to {node}: its heartbeat tells what comes of it."));
+        }
+        let target = front.target.as_ref().and_then(|target| target.parse::<ConnectTarget>().ok());
+        let Some(target) = target.filter(|_| self.model.canopen.starting.is_none()) else { return };
+        let (sender, started) = bounded(1);
+        let work = move || {
+            // A window that was closed meanwhile does not want to know.
+            let _ = sender.send(bus::start(&target, None, node).map(|started| started.sentence(node)));
+        };
+        // Without a thread the receiver is disconnected, which is told.
+        let _ = std::thread::Builder::new().name("start node".to_owned()).spawn(work);
+        self.model.canopen.starting = Some(started);
+    }
+
+    /// Tells what came of starting a node.
+    pub(super) fn take_started(&mut self, ctx: &Context) {
+        let Some(started) = &self.model.canopen.starting else { return };
+        match started.try_recv() {
+            Err(TryRecvError::Empty) => return ctx.request_repaint_after(OPENING_INTERVAL),
+            Ok(Ok(sentence)) => self.model.messages.note(format!("{sentence} Connect to the bus again.")),
+            Ok(Err(why)) => self.model.messages.fail(why),
+            Err(TryRecvError::Disconnected) => {
+                self.model
+                    .messages
+                    .fail("Could not start the node: the system gave no thread. Try again.".to_owned());
+            }
+        }
+        self.model.canopen.starting = None;
     }
 }

@@ -4,6 +4,7 @@ use brushwork_canopen::NodeId;
 use brushwork_canopen::adapter::Form;
 use brushwork_link::transport::PortInfo;
 use brushwork_link::transport::target::DEFAULT_ADAPTER_BAUD;
+use crossbeam_channel::Receiver;
 
 /// Baud rates that adapters are often set to.
 pub const ADAPTER_BAUD_RATES: [u32; 6] = [38_400, 57_600, 115_200, 230_400, 460_800, 1_000_000];
@@ -21,11 +22,20 @@ pub struct CanOpenChoice {
     pub baud: u32,
     /// One node, or all that answer.
     pub node: Option<u8>,
+    /// What comes of a node that is being started.
+    pub starting: Option<Receiver<Result<String, String>>>,
 }
 
 impl Default for CanOpenChoice {
     fn default() -> Self {
-        Self { open: false, port: None, form: Form::default(), baud: DEFAULT_ADAPTER_BAUD, node: None }
+        Self {
+            open: false,
+            port: None,
+            form: Form::default(),
+            baud: DEFAULT_ADAPTER_BAUD,
+            node: None,
+            starting: None,
+        }
     }
 }
 

@@ -4,6 +4,7 @@
 //! Several connections are open at once; one is in front. Switching swaps whole connections, so nothing of one controller can
 //! end up in another.
 
+use brushwork_canopen::bus::Monitor;
 use std::any::Any;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -86,6 +87,8 @@ pub struct Connection {
     /// Which channels the graph showed when another screen that drives was left.
     graph_choices: BTreeMap<&'static str, Vec<bool>>,
     pub world: WorldPanel,
+    /// What is heard of the nodes of a CAN bus; kept when the link has ended.
+    pub bus: Option<Monitor>,
     /// The worlds of the simulated units, while they run.
     pub worlds: Option<Arc<Vec<WorldView>>>,
     /// Which of them is looked at.
@@ -169,6 +172,7 @@ impl Connection {
             graph_of: Screen::Pwm,
             graph_choices: BTreeMap::new(),
             world: WorldPanel::default(),
+            bus: None,
             worlds: None,
             world_unit: 0,
         }

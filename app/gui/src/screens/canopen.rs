@@ -1,14 +1,22 @@
-//! The window for connecting to a CANopen bus (MCP manual 1.2.8, "Connect CANOpen Bus").
+//! The window for connecting to a CANopen bus (MCP manual 1.2.8, "Connect CANOpen Bus"), and who is on the bus in front.
+
+use std::time::Duration;
 
 use brushwork_canopen::NodeId;
 use brushwork_canopen::adapter::Form;
-use egui::{ComboBox, Context, DragValue, Grid, Rect, RichText, Ui, Window, vec2};
+use brushwork_canopen::bus::Monitor;
+use brushwork_core::session::bus::BusList;
+use egui::{Button, ComboBox, Context, DragValue, Grid, Rect, RichText, Ui, Window, vec2};
 
 use crate::command::{Command, Commands};
 use crate::model::Model;
 use crate::model::canopen::ADAPTER_BAUD_RATES;
-use crate::widgets::choice_ui;
+use crate::widgets::{choice_ui, heading_ui};
 
+/// Emergencies that are listed.
+const EMERGENCIES: usize = 8;
+/// How often the ages of heartbeats are drawn anew.
+const AGE_INTERVAL: Duration = Duration::from_millis(200);
 const SIMULATED: &str = "Simulated bus, in this program";
 
 /// Draws the window, if it is open, within `room`.
@@ -75,6 +83,47 @@ fn contents_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         model.canopen.open = false;
         commands.push(Command::ConnectTo(model.canopen.target()));
     }
+    if let Some(bus) = &model.front.bus {
+        ui.separator();
+        bus_ui(ui, bus, model.front.phase.is_open(), model.canopen.starting.is_some(), commands);
+    }
+}
+
+/// Who is on the bus in front, what each says of itself, and which emergencies were heard.
+fn bus_ui(ui: &mut Ui, bus: &Monitor, is_open: bool, is_starting: bool, commands: &mut Commands) {
+    let list = BusList::of(bus);
+    heading_ui(ui, "Nodes on the bus");
+    if !is_open {
+        weak_ui(ui, "As they were when the link was open.");
+    }
+    Grid::new("nodes of the bus").num_columns(5).striped(true).spacing(vec2(12.0, 4.0)).show(ui, |ui| {
+        for head in ["Node", "State", "Heartbeat", "Who"] {
+            ui.strong(head);
+        }
+        ui.end_row();
+        for view in &list.nodes {
+            ui.label(view.node.get().to_string());
+            ui.label(view.state_text());
+            ui.label(view.heartbeat_text());
+            ui.label(view.who_text());
+            if view.can_be_started() {
+                let title = format!("Start {}", view.node);
+                let help = "Sends the NMT command \"start\" to this node alone.";
+                if ui.add_enabled(!is_starting, Button::new(title)).on_hover_text(help).clicked() {
+                    commands.push(Command::StartNode(view.node));
+                }
+            }
+            ui.end_row();
+        }
+    });
+    if !list.emergencies.is_empty() {
+        heading_ui(ui, "Emergencies, oldest first");
+        for sentence in list.emergencies.iter().rev().take(EMERGENCIES).rev() {
+            ui.label(sentence);
+        }
+    }
+    // Ages go on without anything that happens.
+    ui.ctx().request_repaint_after(AGE_INTERVAL);
 }
 
 fn adapter_ui(ui: &mut Ui, model: &mut Model) {

@@ -286,3 +286,47 @@ fn settings_are_read_and_a_simulated_node_is_armed_driven_and_stopped_over_can()
     window.harness.key_press(egui::Key::Space);
     window.until("Space stops it", |app| driven(app, false));
 }
+
+/// MCPs behind an adapter on a pseudo-terminal: two of them with one number, one that is stopped, and a node of another maker.
+#[cfg(unix)]
+#[test]
+fn the_bus_view_tells_states_strangers_and_doubles_and_starts_a_node_that_is_stopped() {
+    use brushwork_canopen::NodeId;
+    use brushwork_canopen::adapter::Form;
+    use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
+    use brushwork_plant::machine::{Machine as _, StreamIndex};
+    use brushwork_plant::server::{Endpoint, Server, ServerOptions};
+    let node = |id| NodeId::new(id).unwrap();
+    let units = [3, 4, 4, 5].map(|id| {
+        let mut config = ControllerConfig::default();
+        config.set_node(node(id));
+        Controller::new(config).unwrap()
+    });
+    let mut bus = Bus::on_can(units.to_vec(), Form::Ascii).unwrap();
+    bus.add_other_node(node(9));
+    bus.receive(StreamIndex::Usb, b":S000N0205;"); // NMT: stop, node 5
+    let folder = tempfile::tempdir().unwrap();
+    let adapter = folder.path().join("adapter");
+    let endpoint = Endpoint::Pty { link: adapter.clone() };
+    let server = Server::spawn(bus, ServerOptions::default(), &endpoint).unwrap();
+    let mut window = Window::new();
+    window.open(&format!("can:{}", adapter.display()));
+    window.choose("Device", "Connect CANopen Bus…");
+    window.until_text("NODES ON THE BUS");
+    for text in [
+        "MCP266 2x60A v1.0.0",
+        "several devices answer as this node",
+        "another device (Another drive): never written to",
+        "stopped: it answers nothing until it is started",
+    ] {
+        window.until_text(text);
+    }
+    window.click(Role::Button, "Start node 5");
+    window.until("node 5 is operational", move |app| {
+        let views = app.model.front.bus.as_ref().unwrap().views();
+        views.iter().any(|view| {
+            view.node == node(5) && view.state == Some(brushwork_canopen::nmt::State::Operational)
+        })
+    });
+    assert!(server.inspect(|bus| bus.other_nodes()[0].written().is_empty()).unwrap());
+}

@@ -100,7 +100,7 @@ impl Opener for EchoOpener {
         let (device_loop, device) = DeviceLoop::new(transport, Arc::new(gate.clone()), options);
         *self.slot.borrow_mut() = Some(Lockstep::new(gate, device_loop));
         let (sender, receiver) = bounded(1);
-        sender.send(Ok(OpenLink { device, world: None })).expect("the receiver is here");
+        sender.send(Ok(OpenLink { device, bus: None, world: None })).expect("the receiver is here");
         receiver
     }
 }

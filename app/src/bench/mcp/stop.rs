@@ -253,7 +253,7 @@ impl Opener for Given {
         let (sender, receiver) = bounded(1);
         if let Some(device) = self.0.take() {
             // The receiver is right here, and the channel has room.
-            let _ = sender.send(Ok(OpenLink { device, world: None }));
+            let _ = sender.send(Ok(OpenLink { device, bus: None, world: None }));
         }
         receiver
     }

@@ -1,11 +1,12 @@
 //! The family as links and the settings engine know it.
 
 use crate::MCP;
-use crate::can::{BusTransport, CanOpen, Monitor};
+use crate::can::{BusTransport, CanOpen};
 use crate::controller::PacketSerial;
 use crate::readings::McpReadings;
 use crate::settings::McpSettings;
 use brushwork_canopen::adapter::Form;
+use brushwork_canopen::bus::Monitor;
 use brushwork_link::device::Readings;
 use brushwork_link::device::controller::Search;
 use brushwork_link::driver::CanLine;
@@ -42,6 +43,7 @@ impl Driver for McpDriver {
     ) -> Result<CanLine, Box<dyn Transport>> {
         let monitor = Monitor::default();
         let line = BusTransport::new(adapter, clock, form, monitor.clone());
-        Ok((Box::new(line), Box::new(CanOpen::new(form, monitor))))
+        let search = CanOpen::new(form, monitor.clone());
+        Ok(CanLine { transport: Box::new(line), search: Box::new(search), monitor })
     }
 }

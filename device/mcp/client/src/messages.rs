@@ -151,6 +151,7 @@ messages! {
         CheckBaudRate "Check the baud rate, and that the device on this port is a motor controller set to packet serial",
         CheckAdapter "Check the adapter's port and baud rate, its form (form=ascii or form=binary), the bus rate and the 120 Ω at both ends",
         CheckNode "Check the node id, that the controller's CAN pins are set to CANopen, and that its rate is the bus's",
+        StartNode { id: u8 } "Start it with \"brushwork nodes --start {id}\" or in the window under Device, CANopen bus; then connect again",
         GiveNode "Give the node of the motor controller: node=3",
         ReadSettings "Read the settings to see what the controller works with",
         ResetFirst "Remove the cause and reset the error first",

@@ -26,7 +26,7 @@ In the machine (motor=1 or motor=2, else motor 1; unit=N for the Nth unit of a b
   plant:logic=VOLTS         plant:hot-board=CELSIUS   plant:e-stop
   plant:power-loss          plant:pin-volts=VOLTS,pin=N     plant:driver-fault
   plant:short-circuit       plant:boot-fault          plant:can-fault
-  plant:detect-battery      (the buttons on the board: the cells are counted from the next start on)
+  plant:detect-battery      (the buttons on the board; cells are counted from the next start on)
   plant:limit-switch=forward|backward|home,pin=N      (wires the switch to that pin)
 
 Without FROM a fault is there from the start, without TO it stays. Times: 2s, 2.5s, 500ms, 100us, 1min.";
@@ -443,7 +443,7 @@ mod tests {
             fault(&text);
             count += 1;
         }
-        assert_eq!(count, 22);
+        assert_eq!(count, 23);
         for line in FAULT_SYNTAX.lines().filter(|line| line.starts_with("  ") && line.contains(": ")) {
             let (_, examples) = line.split_once(": ").expect("it was just found");
             for example in examples.split(", ") {

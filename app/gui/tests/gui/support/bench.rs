@@ -466,7 +466,7 @@ impl Opener for BenchOpener {
                 let (device_loop, device) = DeviceLoop::new(transport, Arc::new(gate.clone()), options);
                 *self.loops[which].borrow_mut() = Some(Lockstep::new(gate, device_loop));
                 let world = simulated.then(|| Arc::new(BenchWorld::new(line.clone())) as _);
-                Ok(OpenLink { device, world })
+                Ok(OpenLink { device, bus: None, world })
             }
             other => Err(SessionError::from(OpenError::NotFound { path: other.to_string() })),
         };
@@ -488,7 +488,7 @@ impl BenchOpener {
         let transport = Box::new(self.minds.through(gate.clone()));
         let (device_loop, device) = DeviceLoop::new(transport, Arc::new(gate.clone()), options);
         *self.loops[2].borrow_mut() = Some(Lockstep::new(gate, device_loop));
-        OpenLink { device, world: Some(Arc::new(MindWorld(self.minds.clone()))) }
+        OpenLink { device, bus: None, world: Some(Arc::new(MindWorld(self.minds.clone()))) }
     }
 }
 

@@ -15,6 +15,6 @@ mod traffic;
 pub use command::{Probe, carry_out, probe};
 pub use discover::CanOpen;
 pub use master::{MASTER, MASTER_LIMIT};
-pub use monitor::{BusTransport, Monitor};
+pub use monitor::BusTransport;
 pub use place::Place;
 pub use traffic::describe;

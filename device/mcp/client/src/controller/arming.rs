@@ -3,9 +3,10 @@
 //! Assumed: that a stream's time-out stops the motors when no lower priority level is active. The manual says only that the
 //! next level takes over (MCP manual 1.9.3, commands 139 and 145); this is our reading of "none takes over".
 
-use crate::can::{MASTER_LIMIT, Monitor, Place};
+use crate::can::{MASTER_LIMIT, Place};
 use crate::controller::speaker::{Speaker, Wire};
 use crate::messages::{McpActMessage, McpCauseMessage, McpDriverMessage, McpRemedyMessage};
+use brushwork_canopen::bus::Monitor;
 use brushwork_link::Message;
 use brushwork_link::device::controller::{ArmCheck, Line};
 use brushwork_link::exchange::{Exchange, ExchangeError};

@@ -1,11 +1,12 @@
 //! Finding the units of a link: which addresses answer, whether they are one unit, and who each is.
 
-use crate::can::{Monitor, Place};
+use crate::can::Place;
 use crate::controller::speaker::{Speaker, Wire};
 use crate::controller::unit::Mcp;
 use crate::controller::{generation, polling, stopping};
 use crate::messages::{McpCauseMessage, McpIdentityMessage, McpRemedyMessage};
 use crate::{MCP, McpFacts, firmware_of as generation_number};
+use brushwork_canopen::bus::Monitor;
 use brushwork_link::Message;
 use brushwork_link::device::StopBytes;
 use brushwork_link::device::controller::{Controller, DiscoverError, Line, Search};

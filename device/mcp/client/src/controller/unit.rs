@@ -1,11 +1,12 @@
 //! One MCP or RoboClaw controller, as the device thread sees it.
 
-use crate::can::{Monitor, describe};
+use crate::can::describe;
 use crate::controller::driving::packets;
 use crate::controller::speaker::{Speaker, Wire};
 use crate::controller::traffic::{describe_received, describe_sent};
 use crate::controller::{arming, inquiry, polling, stopping};
 use crate::messages::{McpCauseMessage, McpDriverMessage};
+use brushwork_canopen::bus::Monitor;
 use brushwork_link::Message;
 use brushwork_link::device::Described;
 use brushwork_link::device::Drive;

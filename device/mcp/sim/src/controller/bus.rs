@@ -1,7 +1,8 @@
 //! Several controllers on one wire.
 
 use super::Controller;
-use super::canbus::CanBus;
+use super::canbus::{CanBus, OtherNode};
+use brushwork_canopen::NodeId;
 use brushwork_canopen::adapter::Form;
 use brushwork_plant::machine::{Machine, StreamIndex};
 use brushwork_plant::world::{WorldAction, WorldView};
@@ -69,6 +70,18 @@ impl Bus {
         if let Some(can) = &mut self.can {
             can.set_producer_heartbeat(unit, milliseconds);
         }
+    }
+
+    /// Puts a node of another maker on the CAN bus; does nothing elsewhere.
+    pub fn add_other_node(&mut self, node: NodeId) {
+        if let Some(can) = &mut self.can {
+            can.others.push(OtherNode::new(node));
+        }
+    }
+
+    /// The nodes of other makers on the CAN bus.
+    pub fn other_nodes(&self) -> &[OtherNode] {
+        self.can.as_ref().map_or(&[], |can| &can.others)
     }
 
     /// The stream the wire is on.

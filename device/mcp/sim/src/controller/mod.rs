@@ -30,6 +30,7 @@ mod unit_view;
 mod watch;
 
 pub use bus::{Bus, BusError};
+pub use canbus::OtherNode;
 pub use config::{ControllerConfig, FirmwareOptions};
 pub use loader::{ERASE_TIME, Flash, PAGE_WRITE_TIME};
 pub use port::{FAST_TURNAROUND, SLOW_TURNAROUND, turnaround};

@@ -9,12 +9,14 @@
 
 mod dictionary;
 mod node;
+mod other;
 mod rate;
 
 use super::Controller;
 use brushwork_canopen::Frame;
 use brushwork_canopen::adapter::{Decoder, Form};
 use node::Node;
+pub use other::OtherNode;
 use rate::on_the_bus;
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -28,6 +30,8 @@ pub(super) struct CanBus {
     form: Form,
     decoder: Decoder,
     nodes: Vec<Node>,
+    /// Nodes of other makers.
+    pub others: Vec<OtherNode>,
     outbox: VecDeque<(Duration, Vec<u8>)>,
 }
 
@@ -38,6 +42,7 @@ impl CanBus {
             form,
             decoder: Decoder::new(form),
             nodes: (0..units).map(|_| Node::default()).collect(),
+            others: Vec::new(),
             outbox: VecDeque::new(),
         }
     }
@@ -97,6 +102,10 @@ impl CanBus {
 
     /// Gives a frame to every node but its sender.
     fn deliver(&mut self, frame: &Frame, from: Option<usize>, units: &mut [Controller], at: Duration) {
+        let answers: Vec<Frame> = self.others.iter_mut().filter_map(|other| other.take(frame)).collect();
+        for answer in answers {
+            self.send(&answer, at + ANSWER_TIME + on_the_bus(&answer));
+        }
         for index in 0..self.nodes.len() {
             let Some(unit) = units.get_mut(index).filter(|_| Some(index) != from) else { continue };
             if let Some(answer) = self.nodes[index].take(frame, unit, at) {
