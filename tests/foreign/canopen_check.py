@@ -1,6 +1,6 @@
 """The CANopen node of the simulated controller, judged by the Python package `canopen`.
 
-Usage: canopen_check.py PORT NODE. PORT is a GridConnect adapter in its ASCII form, for which python-can has no interface; the one here
+Usage: canopen_check.py PORT NODE EDS. EDS is the node's data sheet, by whose names objects are read. PORT is a GridConnect adapter in its ASCII form, for which python-can has no interface; the one here
 shares nothing with the project but the public description of `:S601N40181001;`.
 """
 
@@ -13,7 +13,7 @@ import serial
 
 import harness
 
-PORT, NODE = sys.argv[1], int(sys.argv[2])
+PORT, NODE, EDS = sys.argv[1], int(sys.argv[2]), sys.argv[3]
 
 
 class GridConnect(can.BusABC):
@@ -100,6 +100,35 @@ battery = number(sdo.upload(0x2018, 0))
 harness.report("main battery", abs(battery - truth["main_tenths"]) <= 1, f"{battery} against {truth['main_tenths']}")
 check("status", number(sdo.upload(0x205A, 0)), truth["status_word"])
 check("streams are a list of five", number(sdo.upload(0x2092, 1)), 5)
+
+# By the names of the data sheet, with types, signs and limits as it has them.
+named = canopen.RemoteNode(NODE, EDS)
+network.add_node(named)
+by_name = named.sdo
+by_name.RESPONSE_TIMEOUT = harness.PATIENCE_S
+check("the sheet is of this product", named.object_dictionary.device_information.product_number, 266)
+check("battery by name", by_name["Read main battery"].raw, number(by_name.upload(0x2018, 0)))
+check("version by name", by_name["Read version"]["Text"].raw.strip("\n\0 "), truth["version"])
+check("identity by name", by_name["Identity object"]["Product code"].raw, 266)
+written = by_name["M1 velocity PID"]
+for part, value in (("D", 0x4000), ("P", 0x10000), ("I", 0x8000), ("Qpps", 12345)):
+    written[part].raw = value
+check("a gain written by name is read by name", by_name["Read M1 velocity PID"]["Qpps"].raw, 12345)
+limits = by_name["M1 duty"].od
+check("limits of a duty", (limits.min, limits.max), (-32767, 32767))
+checked, refused = 0, []
+for entry in named.object_dictionary.values():
+    parts = [entry] if isinstance(entry, canopen.objectdictionary.ODVariable) else list(entry.values())
+    for part in parts:
+        if part.access_type in ("ro", "rw", "const"):
+            checked += 1
+            try:
+                by_name.upload(part.index, part.subindex)
+            except canopen.SdoAbortedError as error:
+                refused.append("%04X:%d %s" % (part.index, part.subindex, error))
+harness.report("every readable object of the sheet is there", not refused, refused)
+harness.report("and they are many", checked > 150, checked)
+network.add_node(node)
 
 check("no such object", abort_code(lambda: sdo.upload(0x1234, 0)), 0x06020000)
 check("no such part", abort_code(lambda: sdo.upload(0x1018, 9)), 0x06090011)

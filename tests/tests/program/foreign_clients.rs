@@ -103,11 +103,17 @@ fn the_python_package_canopen_reads_drives_and_loses_the_node() {
     let node = NodeId::new(3).unwrap();
     let mut controller = OnPty::on_can(node, Form::Ascii);
     let port = controller.port();
-    let findings = foreign::run("canopen_check.py", &port, &["3"], &mut controller);
+    let folder = tempfile::tempdir().unwrap();
+    let sheet = folder.path().join("mcp266.eds");
+    let model = brushwork_mcp_wire::models::lookup("mcp266").unwrap();
+    std::fs::write(&sheet, brushwork_mcp_wire::canopen::data_sheet(model, Generation::Gen1).unwrap())
+        .unwrap();
+    let sheet = sheet.display().to_string();
+    let findings = foreign::run("canopen_check.py", &port, &["3", &sheet], &mut controller);
     print(&findings);
     println!("{} findings", findings.findings.len());
     assert!(findings.failures().is_empty(), "{:#?}", findings.failures());
-    assert!(findings.findings.len() >= 23, "the script checked only {} things", findings.findings.len());
+    assert!(findings.findings.len() >= 31, "the script checked only {} things", findings.findings.len());
 }
 
 #[test]

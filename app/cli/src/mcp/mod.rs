@@ -1,6 +1,7 @@
 //! MCP and RoboClaw on the command line: firmware, scripts, the language of scripts, and their part of the shared commands.
 
 pub mod decoder;
+mod eds;
 mod firmware;
 mod mcl;
 mod protocol;
@@ -35,11 +36,13 @@ impl Family for McpCommands {
     fn commands(&self) -> Vec<Tool> {
         let firmware = "Show what firmware is installed, and update it from a file of yours";
         let script = "Download, start and stop a controller's script";
+        let eds = "Write the electronic data sheet (EDS) of a controller as a CANopen node";
         let mcl = "Check, build, run, list and format MCL scripts; print the language reference";
         vec![
             Tool::new("firmware", 10, firmware, firmware::run),
             Tool::new("script", 11, script, script::run),
             Tool::new("mcl", 40, mcl, mcl::run),
+            Tool::new("eds", 33, eds, eds::run),
         ]
     }
 

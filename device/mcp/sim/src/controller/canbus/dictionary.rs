@@ -8,14 +8,13 @@ use brushwork_canopen::sdo::{Abort, Dictionary};
 use brushwork_mcp_wire::canopen::objects::{
     LIST_CONTROL, Shape, TEXT, TRIGGER, bytes_of, command_of, raw_of, shape,
 };
+use brushwork_mcp_wire::canopen::{VENDOR, product_of};
 use brushwork_values::{Field, Value};
 use std::collections::BTreeMap;
 use std::time::Duration;
 
 /// Time between two heartbeats of a node that has just started. Assumed.
 const PRODUCER_MS: u16 = 1000;
-/// Vendor in the identity object. Assumed: not known, and 0 belongs to nobody.
-const VENDOR: u32 = 0;
 
 /// What a node keeps about its communication, and about accesses that take several frames.
 #[derive(Clone, Debug)]
@@ -146,6 +145,7 @@ impl Objects<'_> {
                 bytes_of(field, number(&values, field.name).unwrap_or(0)).ok_or(Abort::GENERAL)
             }
             (Shape::Several(fields), _) => self.read_several(command, fields, subindex),
+            (Shape::Text, _) if subindex == 0 => Ok(vec![TEXT]),
             (Shape::Text, _) if subindex == TEXT => self.read_text(command),
             (Shape::List(fields), _) => self.read_list(command, fields, subindex),
             (Shape::Single(_) | Shape::Text, _) => Err(Abort::NO_SUBINDEX),
@@ -265,10 +265,4 @@ impl Objects<'_> {
 
 fn count_byte(count: usize) -> u8 {
     u8::try_from(count).unwrap_or(u8::MAX)
-}
-
-/// The digits of a model's name: 266 for the MCP266. Assumed.
-fn product_of(name: &str) -> u32 {
-    let digits: String = name.chars().filter(char::is_ascii_digit).collect();
-    digits.parse().unwrap_or(0)
 }
