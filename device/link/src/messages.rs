@@ -91,6 +91,7 @@ messages! {
         NoSuchMember "A profile has no such member.",
         MemberTwice "The member stands twice.",
         SettingTwice "The setting stands twice.",
+        ValueChanged { said: String, raw: i64, held: String } "It says {said}, and its \"raw\" {raw} is {held}: {said} counts.",
         Expected { wanted: &'static str, got: &'static str } "Expected {wanted}, got {got}.",
         ExpectedAny { wanted: &'static str } "Expected {wanted}, and there is nothing.",
         UnknownModel { model: String, known: String } "{model} is no known model; known are {known}.",

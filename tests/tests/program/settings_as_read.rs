@@ -1,19 +1,20 @@
-//! Whatever registers a unit holds, out of range and without a meaning too, a profile of it brings back to the last bit, in
-//! virtual time: random states of every model and generation, exported, compared, and written to a unit from the factory.
+//! Whatever registers a unit holds, out of range, without a meaning and of either sign too, a profile of it brings back to the last
+//! bit, in virtual time: random states of every model and generation, exported to a file, compared, imported to another unit of the
+//! same kind that holds other ones, and that unit's own brought back from the backup that was made then.
 
-use brushwork_link::Message;
 use brushwork_tests::said::Said;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Duration;
 
+use brushwork_core::keep::{Keeping, Store, UnitId};
 use brushwork_link::FamilyChoice;
 use brushwork_link::device::{Addresses, DeviceOptions, Job, JobContext, JobEnding};
 use brushwork_link::settings::{
-    Place, Profile, Row, SettingsImage, SettingsTable, Sink, Subject, WriteOptions, diff, plan, read_all,
-    restore_defaults, write,
+    Place, Profile, Row, SettingsImage, SettingsTable, Sink, Strictness, Subject, WriteOptions, WriteReport,
+    diff, plan, read_all, write_kept,
 };
-use brushwork_link::{Failure, Stream, UnitAddress, Wire};
+use brushwork_link::{Failure, FamilyRef, Stream, UnitAddress, Wire};
 use brushwork_mcp_client::packet::PacketWire;
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_mcp_sim::settings::Settings;
@@ -26,6 +27,7 @@ use brushwork_plant::machine::StreamIndex;
 use brushwork_tests::virtual_line::{HiddenOf, VirtualLine};
 use brushwork_tests::virtual_link::VirtualLink;
 use brushwork_values::Kind;
+use tempfile::TempDir;
 
 /// Random states of each model and generation.
 const STATES: u64 = 3;
@@ -52,15 +54,14 @@ impl Random {
     }
 }
 
-/// Where a row may not be anything: what would cut the way to the unit, and the sign of the minimum current, which units report
-/// either way and this program writes as the generation wants it.
-fn raw_of(random: &mut Random, generation: Generation, sink: Sink, kind: Kind, now: i64) -> i64 {
+/// Where a row may not be anything: what would cut the way to the unit, and the one number of the minimum current that has no
+/// magnitude in its field.
+fn raw_of(random: &mut Random, sink: Sink, kind: Kind, now: i64) -> i64 {
     let (low, high) = kind.limits().expect("settings are numbers");
     match (sink.command, sink.place.field) {
         (141, "address") | (145, "index") => now,
         (145, "type") if sink.index == Some(0) => now,
-        (133 | 134, "min") if generation < Generation::Gen3 => random.raw(low + 1, 0),
-        (133 | 134, "min") => random.raw(0, i64::from(i32::MAX)),
+        (133 | 134, "min") => random.raw(low + 1, high),
         _ => random.raw(low, high),
     }
 }
@@ -87,7 +88,7 @@ fn randomise(wire: &mut PacketWire, table: &SettingsTable, generation: Generatio
                     let place = Place { field: field.name, bits: None };
                     let sink = Sink { command, place, index };
                     let now = now(command, index, field.name).unwrap_or_default();
-                    raw_of(random, generation, sink, field.kind, now)
+                    raw_of(random, sink, field.kind, now)
                 }
             };
             arguments.push(value);
@@ -113,12 +114,60 @@ fn settings(line: &VirtualLine<Bus>) -> Settings {
     line.with(|bus| bus.controllers()[0].settings())
 }
 
+/// What a unit holds, by way of a file.
+fn exported(folder: &TempDir, table: &SettingsTable, settings: &SettingsImage) -> Profile {
+    let path = folder.path().join("exported.json");
+    profile(*table.subject(), settings.clone()).save(&path).expect("the folder is the test's");
+    let opened = Profile::open(&path, Strictness::Refuse).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!((opened.upgraded, opened.corrected), (Vec::new(), Vec::new()));
+    opened.profile
+}
+
+/// What keeps backups of the unit in a folder.
+fn unit_id(table: &SettingsTable) -> UnitId {
+    UnitId {
+        model: table.subject().model.key.to_owned(),
+        place: "the other one".to_owned(),
+        has_serial_number: true,
+        address: UnitAddress::factory(table.subject().family()).get(),
+        is_simulated: false,
+    }
+}
+
+/// The newest backup.
+fn backup(store: &Store, table: &SettingsTable) -> Profile {
+    let newest = store.backups(Some(&unit_id(table))).into_iter().next().expect("there is one");
+    let opened = newest.open().unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!((opened.upgraded, opened.corrected), (Vec::new(), Vec::new()));
+    opened.profile
+}
+
+/// Writes what a profile says as an import does, with a backup first; what is unusual is told, once each.
+fn bring(
+    wire: &mut dyn Wire,
+    table: &SettingsTable,
+    stored: &Profile,
+    options: WriteOptions,
+    keeping: &Keeping,
+) -> WriteReport {
+    assert_eq!(stored.fitted_to(table).changes.len(), 0);
+    let ram = read_all(wire, *table.subject()).expect("it answers").image;
+    let wanted = stored.changes_for(table, &ram, options.simulated).expect("it fits").wanted;
+    let planned = plan(table, &ram, &wanted, options).expect("it can be written");
+    let reported =
+        planned.warnings.iter().filter(|text| text.to_string().ends_with("It is written as it was read."));
+    assert_eq!(reported.count(), unusual(table, &wanted), "{:#?}", planned.warnings);
+    let mut keeper = keeping.keeper(unit_id(table), "");
+    write_kept(wire, table, &wanted, options, &mut *keeper).unwrap_or_else(|error| panic!("{error}"))
+}
+
 fn profile(subject: Subject, settings: SettingsImage) -> Profile {
     let reported = String::new;
+    let family: FamilyRef = subject.family();
     Profile {
         subject,
         firmware: reported(),
-        address: UnitAddress::factory(brushwork_mcp_client::MCP),
+        address: UnitAddress::factory(family),
         date: reported(),
         unit: reported(),
         note: reported(),
@@ -134,42 +183,44 @@ fn unusual(table: &SettingsTable, wanted: &SettingsImage) -> usize {
 
 #[test]
 fn any_registers_come_back_to_the_last_bit_in_every_model_and_generation() {
+    let folder = TempDir::new().expect("a temporary folder can be made");
+    let keeping = Keeping::new(Store::at(folder.path()));
+    let (mut strange, mut odd_signs) = (0, 0);
     for (index, model) in models::MODELS.iter().enumerate() {
         for generation in Generation::ALL {
             for state in 0..STATES {
                 let seed = 1_000 * index as u64 + 10 * u64::from(generation.number()) + state;
-                let what = format!("{} {generation}, seed {seed}", model.key);
-                println!("{what}");
+                println!("{} {generation}, seed {seed}", model.key);
                 let (line, mut wire, table) = unit(model, generation);
                 randomise(&mut wire, &table, generation, &mut Random(seed));
                 let held = settings(&line);
                 let image = read_all(&mut wire, *table.subject()).expect("it answers").image;
+                strange += unusual(&table, &image);
+                let stored = exported(&folder, &table, &image);
+                assert_eq!(diff(&table, &stored.settings, &image), []);
 
-                let text = profile(*table.subject(), image.clone()).to_json();
-                let stored = Profile::parse(&text).unwrap_or_else(|error| panic!("{what}: {error}"));
-                assert_eq!(diff(&table, &stored.settings, &image), [], "{what}");
-                assert_eq!(stored.fitted_to(&table).changes, [""; 0], "{what}");
+                let (other, mut wire, _) = unit(model, generation);
+                randomise(&mut wire, &table, generation, &mut Random(seed + 500_000));
+                let own = settings(&other);
+                assert_ne!(own, held);
+                let report = bring(&mut wire, &table, &stored, AS_READ, &keeping);
+                assert!(report.is_complete(), "{:#?}", report.sentences(&table));
+                assert_eq!(settings(&other), held);
+                let now = read_all(&mut wire, *table.subject()).expect("it answers").image;
+                assert_eq!(diff(&table, &stored.settings, &now), []);
 
-                restore_defaults(&mut wire, *table.subject()).unwrap_or_else(|failure| panic!("{failure}"));
-                assert_ne!(settings(&line), held, "{what}");
-                let ram = read_all(&mut wire, *table.subject()).expect("it answers").image;
-                let asked =
-                    stored.changes_for(&table, &ram, true).unwrap_or_else(|error| panic!("{what}: {error}"));
-                let planned = plan(&table, &ram, &asked.wanted, AS_READ).expect("it can be written");
-                let reported = planned
-                    .warnings
+                let backup = backup(keeping.store(), &table);
+                odd_signs += diff(&table, &backup.settings, &stored.settings)
                     .iter()
-                    .filter(|text| text.to_string().ends_with("It is written as it was read."));
-                let unusual = unusual(&table, &asked.wanted);
-                assert!(unusual > 0, "{what}: the state is not strange enough");
-                assert_eq!(reported.count(), unusual, "{what}: {:#?}", planned.warnings);
-                let report = write(&mut wire, &table, &asked.wanted, AS_READ)
-                    .unwrap_or_else(|error| panic!("{what}: {error}"));
-                assert!(report.is_complete(), "{what}: {:#?}", report.sentences(&table));
-                assert_eq!(settings(&line), held, "{what}");
+                    .filter(|change| change.key.ends_with(".min_amps"))
+                    .count();
+                let report = bring(&mut wire, &table, &backup, AS_READ, &keeping);
+                assert!(report.is_complete(), "{:#?}", report.sentences(&table));
+                assert_eq!(settings(&other), own);
             }
         }
     }
+    assert!(strange > 1_000 && odd_signs > 100, "{strange} strange values, {odd_signs} changed signs");
 }
 
 type MindLink = VirtualLink<MotionMindBus>;
@@ -211,56 +262,55 @@ fn mind_registers(link: &MindLink) -> Vec<(&'static str, i64)> {
     })
 }
 
+/// Gives every register a random value, and says what they then hold.
+fn randomise_mind(link: &mut MindLink, seed: u64) -> Vec<(&'static str, i64)> {
+    let mut random = Random(seed);
+    let values: Vec<(u8, i64)> = mind_settings()
+        .map(|row| {
+            let range = row.kind.range();
+            (row.number, random.raw(*range.start(), *range.end()))
+        })
+        .collect();
+    job(link, move |wire| {
+        for (number, value) in &values {
+            let written = wire.transact(0x18, &[(*number).into(), *value]);
+            written.map_err(|error| error.failure(Said::Write, "it"))?;
+        }
+        Ok(())
+    });
+    mind_registers(link)
+}
+
 #[test]
 fn any_registers_of_a_motion_mind_come_back_to_the_last_bit_in_both_protocols() {
+    let folder = TempDir::new().expect("a temporary folder can be made");
+    let keeping = Keeping::new(Store::at(folder.path()));
     for protocol in Protocol::ALL {
         for seed in 0..10 {
-            let what = format!("{protocol}, seed {seed}");
-            println!("{what}");
+            println!("{protocol}, seed {seed}");
             let mut link = mind(protocol);
-            let mut random = Random(seed);
-            let values: Vec<(u8, i64)> = mind_settings()
-                .map(|row| {
-                    let range = row.kind.range();
-                    (row.number, random.raw(*range.start(), *range.end()))
-                })
-                .collect();
-            job(&mut link, move |wire| {
-                for (number, value) in &values {
-                    let written = wire.transact(0x18, &[(*number).into(), *value]);
-                    written.map_err(|error| error.failure(Said::Write, "it"))?;
-                }
-                Ok(())
-            });
-            let held = mind_registers(&link);
+            let held = randomise_mind(&mut link, seed);
             let revision = link.bus(|bus| bus.motion_minds()[0].read_one(17)) as u8;
             let subject = brushwork_motion_mind_client::subject(revision);
             let table = SettingsTable::new(subject);
             let image = job(&mut link, move |wire| read_all(wire, subject)).image;
 
-            let mut exported = profile(subject, image.clone());
-            exported.address = brushwork_motion_mind_client::unit_address(1).expect("an address");
-            let stored =
-                Profile::parse(&exported.to_json()).unwrap_or_else(|error| panic!("{what}: {error}"));
-            assert_eq!(diff(&table, &stored.settings, &image), [], "{what}");
-            job(&mut link, move |wire| restore_defaults(wire, subject));
-            assert_ne!(mind_registers(&link), held, "{what}");
-            let ram = job(&mut link, move |wire| read_all(wire, subject)).image;
-            let wanted = stored.changes_for(&table, &ram, false).expect("it fits").wanted;
+            let stored = exported(&folder, &table, &image);
+            assert_eq!(diff(&table, &stored.settings, &image), []);
+
+            let mut other = mind(protocol);
+            let own = randomise_mind(&mut other, seed + 500);
+            assert_ne!(own, held);
             let options = WriteOptions { own_stream: None, simulated: false, as_read: true };
-            let planned = plan(&table, &ram, &wanted, options).expect("it can be written");
-            let reported = planned
-                .warnings
-                .iter()
-                .filter(|text| text.to_string().ends_with("It is written as it was read."));
-            assert_eq!(reported.count(), unusual(&table, &wanted), "{what}: {:#?}", planned.warnings);
-            let (copy, on) = (table.clone(), wanted.clone());
-            let report = job(&mut link, move |wire| {
-                let written = write(wire, &copy, &on, options);
-                written.map_err(|error| Failure::new(Said::Write, "it", Message::error(error), Said::Look))
-            });
-            assert!(report.is_complete(), "{what}: {:#?}", report.sentences(&table));
-            assert_eq!(mind_registers(&link), held, "{what}");
+            for wanted in [&held, &own] {
+                let profile = if wanted == &held { stored.clone() } else { backup(keeping.store(), &table) };
+                let (table, keeping) = (table.clone(), keeping.clone());
+                let told = table.clone();
+                let report =
+                    job(&mut other, move |wire| Ok(bring(wire, &table, &profile, options, &keeping)));
+                assert!(report.is_complete(), "{:#?}", report.sentences(&told));
+                assert_eq!(&mind_registers(&other), wanted);
+            }
         }
     }
 }

@@ -4,9 +4,10 @@ use serde_json::json;
 
 use super::args::{BackupsArgs, RestoreArgs, WriteHow};
 use super::controller::Controller;
-use super::{profile, write};
+use super::write;
 use crate::{Exit, Interrupt, Output, say};
 use brushwork_core::keep::{Backup, Store};
+use brushwork_link::settings::OpenedProfile;
 
 /// Lists the backups of every unit; no controller is needed.
 pub fn list(args: &BackupsArgs, out: &mut Output) -> Result<Exit, Exit> {
@@ -53,15 +54,21 @@ pub fn restore(args: &RestoreArgs, out: &mut Output, interrupt: &Interrupt) -> R
         }
     };
     say(format!("Backup {} ({}).", backup.name, backup.unit()));
-    let opened = profile::open(&backup.path)?;
-    write::bring_about(&controller, Some(opened), &[], &args.how, out)
+    write::bring_about(&controller, Some(open(&backup)?), &[], &args.how, out)
 }
 
 /// Writes a backup back and saves it, asked for before.
 pub fn write_back(controller: &Controller<'_>, name: &str, out: &mut Output) -> Result<Exit, Exit> {
-    let opened = profile::open(&find(name)?.path)?;
+    let opened = open(&find(name)?)?;
     let how = WriteHow { yes: true, dry_run: false, save: true, only: Vec::new(), json: false };
     write::bring_about(controller, Some(opened), &[], &how, out)
+}
+
+/// What a backup holds; what had to be corrected in it is said.
+fn open(backup: &Backup) -> Result<OpenedProfile, Exit> {
+    let opened = backup.open().map_err(|error| Exit::NotTaken.saying(error))?;
+    opened.corrected.iter().for_each(|problem| say(problem.to_string()));
+    Ok(opened)
 }
 
 /// The backup of that name, or the only one whose name begins so.

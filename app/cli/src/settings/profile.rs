@@ -34,7 +34,9 @@ pub fn export(args: &ExportArgs, out: &mut Output, interrupt: &Interrupt) -> Res
     Ok(Exit::NotTaken)
 }
 
-/// The profile in a file; what is wrong with it is said on standard error.
+/// The profile in a file; what is wrong with it, or was changed in it by hand, is said on standard error.
 pub fn open(path: &Path) -> Result<OpenedProfile, Exit> {
-    Profile::open(path, Strictness::Refuse).map_err(|error| Exit::NotTaken.saying(error))
+    let opened = Profile::open(path, Strictness::Refuse).map_err(|error| Exit::NotTaken.saying(error))?;
+    opened.corrected.iter().for_each(|problem| say(problem.to_string()));
+    Ok(opened)
 }

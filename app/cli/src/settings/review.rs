@@ -107,12 +107,11 @@ pub fn tell(lines: Vec<String>, json: bool, is_asked: bool, out: &mut Output) ->
 pub fn changes(table: &SettingsTable, before: &SettingsImage, after: &SettingsImage) -> Vec<Change> {
     let change = |difference: brushwork_link::settings::Difference| {
         let row = table.row(&difference.key)?;
-        let text =
-            |value: Option<SettingValue>| value.map_or_else(|| "-".to_owned(), |value| row.format(value));
+        let [before_text, after_text] = row.format_both([difference.left, difference.right]);
         Some(Change {
             title: row.title(),
-            before_text: text(difference.left),
-            after_text: text(difference.right),
+            before_text,
+            after_text,
             before: difference.left,
             after: difference.right,
             key: difference.key,

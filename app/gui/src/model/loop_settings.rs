@@ -180,9 +180,5 @@ impl UnitSettings {
 }
 
 pub fn number(value: SettingValue) -> Option<f64> {
-    match value {
-        SettingValue::Int(whole) => Some(whole as f64),
-        SettingValue::Number(number) => Some(number),
-        SettingValue::Bool(_) | SettingValue::Choice(_) | SettingValue::UnknownCode(_) => None,
-    }
+    value.int().map(|whole| whole as f64).or_else(|| value.number())
 }

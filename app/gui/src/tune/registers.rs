@@ -1,7 +1,7 @@
 //! The gains of a motor as settings: written from registers, and read into them.
 
 use brushwork_core::tune::law::AnyRegisters;
-use brushwork_link::settings::{SettingValue, SettingsImage};
+use brushwork_link::settings::{SettingValue, SettingsImage, Signed};
 use brushwork_tuning::registers::{Form, RegisterField, RegisterTable as _};
 use brushwork_values::Motor;
 
@@ -26,7 +26,9 @@ fn raw(field: &RegisterField, value: SettingValue) -> Option<i64> {
     match value {
         SettingValue::Bool(set) => Some(i64::from(set)),
         SettingValue::Int(number) => Some((number as f64 * field.scale).round() as i64),
-        SettingValue::Number(number) => Some((number * field.scale).round() as i64),
+        SettingValue::Number(number) | SettingValue::Signed(Signed { number, .. }) => {
+            Some((number * field.scale).round() as i64)
+        }
         SettingValue::Choice(_) | SettingValue::UnknownCode(_) => None,
     }
 }

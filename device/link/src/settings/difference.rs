@@ -21,9 +21,8 @@ pub struct Difference {
 impl Difference {
     /// "Main battery maximum: 34.0 V -> 24.0 V", with "-" for a value that is not there.
     pub fn describe(&self, row: &Row) -> String {
-        let text =
-            |value: Option<SettingValue>| value.map_or_else(|| "-".to_owned(), |value| row.format(value));
-        format!("{}: {} -> {}", row.title(), text(self.left), text(self.right))
+        let [left, right] = row.format_both([self.left, self.right]);
+        format!("{}: {left} -> {right}", row.title())
     }
 }
 

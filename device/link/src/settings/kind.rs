@@ -5,7 +5,7 @@
 use brushwork_values::Code;
 use brushwork_values::Unit;
 
-use super::value::SettingValue;
+use super::value::{SettingValue, Signed};
 
 /// What a setting's value looks like.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,15 +92,26 @@ impl Coding {
         }
     }
 
-    /// The wire number of a logical value; `None` when the value is of another kind or names no code of the
-    /// list.
+    /// What stands in a register, no bit of it lost: where either sign means the same, with its own.
+    pub fn decode_register(self, kind: Kind, raw: i64) -> SettingValue {
+        match (self, self.decode(kind, raw)) {
+            (Self::NegativePerUnit { .. }, SettingValue::Number(number)) => {
+                SettingValue::Signed(Signed { number, raw })
+            }
+            (_, value) => value,
+        }
+    }
+
+    /// The wire number of a logical value, in the sign that is usual there; `None` when the value is of another kind or names no code
+    /// of the list.
     pub fn encode(self, kind: Kind, value: SettingValue) -> Option<i64> {
         match (kind, value) {
             (Kind::Bool, SettingValue::Bool(on)) => Some(i64::from(on)),
             (Kind::Int, SettingValue::Int(number)) => Some(number),
-            (Kind::Fixed { .. }, SettingValue::Number(number)) if number.is_finite() => {
-                Some(self.to_raw(number))
-            }
+            (
+                Kind::Fixed { .. },
+                SettingValue::Number(number) | SettingValue::Signed(Signed { number, .. }),
+            ) if number.is_finite() => Some(self.to_raw(number)),
             (Kind::Choice(codes), SettingValue::Choice(key)) => {
                 codes.iter().find(|code| code.key == key).map(|code| code.raw)
             }

@@ -49,6 +49,6 @@ pub use save_report::{SaveReport, SaveVerdict, unknown};
 pub use step::{Refusal, Stage, Step, WriteOptions};
 pub use subject::Subject;
 pub use table::SettingsTable;
-pub use value::SettingValue;
+pub use value::{SettingValue, Signed};
 pub use write::{WriteError, write};
 pub use write_report::{RowOutcome, RowState, WriteReport};

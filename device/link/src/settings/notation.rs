@@ -3,7 +3,7 @@
 use brushwork_values::{Message, Unit};
 
 use super::kind::{Coding, Kind, unit_forms};
-use super::value::SettingValue;
+use super::value::{SettingValue, Signed};
 use crate::messages::ValueMessage;
 
 /// Text, unit and step together: all that turning a value into text and back needs.
@@ -19,7 +19,9 @@ impl Notation {
     pub(super) fn format(self, value: SettingValue) -> String {
         let bare = self.format_bare(value);
         match (value, self.unit.symbol()) {
-            (SettingValue::Int(_) | SettingValue::Number(_), symbol) if !symbol.is_empty() => {
+            (SettingValue::Int(_) | SettingValue::Number(_) | SettingValue::Signed(_), symbol)
+                if !symbol.is_empty() =>
+            {
                 format!("{bare} {symbol}")
             }
             _ => bare,
@@ -32,7 +34,9 @@ impl Notation {
             SettingValue::Bool(true) => "yes".to_owned(),
             SettingValue::Bool(false) => "no".to_owned(),
             SettingValue::Int(number) => number.to_string(),
-            SettingValue::Number(number) => self.shortest(number),
+            SettingValue::Number(number) | SettingValue::Signed(Signed { number, .. }) => {
+                self.shortest(number)
+            }
             SettingValue::Choice(key) => self.label(key).to_owned(),
             SettingValue::UnknownCode(raw) => format!("unknown ({raw})"),
         }

@@ -192,9 +192,13 @@ impl PlanContext<'_> {
             if base.is_some() && change.is_none() {
                 continue;
             }
-            let value = change.or_else(|| self.ram.get(&row.key));
-            let raw =
-                value.and_then(|value| row.encode(value)).ok_or_else(|| unknown_neighbour(row, changed))?;
+            let now = self.ram.get(&row.key);
+            let raw = match (change, now) {
+                // They mean the same, so the number itself is what is wanted.
+                (Some(change), Some(now)) if row.encode(change) == row.encode(now) => row.register_of(change),
+                _ => change.or(now).and_then(|value| row.encode(value)),
+            };
+            let raw = raw.ok_or_else(|| unknown_neighbour(row, changed))?;
             word = match row.sink().and_then(|sink| sink.place.bits) {
                 Some(bits) if bits.extract(bits.insert(0, raw)) != raw => {
                     let why = PlanMessage::TooManyBits { raw, width: bits.width };
@@ -259,7 +263,6 @@ fn wrong_pairs(table: &SettingsTable, after: &SettingsImage, changes: &SettingsI
 fn is_above(low: SettingValue, high: SettingValue) -> bool {
     match (low, high) {
         (SettingValue::Int(low), SettingValue::Int(high)) => low > high,
-        (SettingValue::Number(low), SettingValue::Number(high)) => low > high,
-        _ => false,
+        _ => low.number().zip(high.number()).is_some_and(|(low, high)| low > high),
     }
 }

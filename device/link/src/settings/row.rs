@@ -8,7 +8,7 @@ use serde::{Serialize, Serializer};
 
 use super::kind::{Coding, Kind};
 use super::notation::Notation;
-use super::value::SettingValue;
+use super::value::{SettingValue, Signed};
 use crate::messages::ValueMessage;
 
 /// One setting of one controller.
@@ -344,20 +344,46 @@ impl Row {
 
     /// The value rounded to the row's step.
     pub fn settle(&self, value: SettingValue) -> SettingValue {
-        match self.coding.encode(self.kind, value) {
-            Some(raw) => self.coding.decode(self.kind, raw),
-            None => value,
+        match (value, self.coding.encode(self.kind, value)) {
+            (SettingValue::Signed(_), Some(_)) | (_, None) => value,
+            (_, Some(raw)) => self.coding.decode(self.kind, raw),
         }
     }
 
-    /// The value of a wire number.
+    /// What stands in the row's register, no bit of it lost.
     pub fn decode(&self, raw: i64) -> SettingValue {
-        self.coding.decode(self.kind, raw)
+        self.coding.decode_register(self.kind, raw)
     }
 
-    /// The wire number of a value; `None` when it is of another kind.
+    /// The number by which a value is written; `None` when it is of another kind.
     pub fn encode(&self, value: SettingValue) -> Option<i64> {
         self.coding.encode(self.kind, value)
+    }
+
+    /// The number that stood in the register where the value was read from one, else that by which it is written.
+    pub fn register_of(&self, value: SettingValue) -> Option<i64> {
+        match value {
+            SettingValue::Signed(signed) => Some(signed.raw),
+            SettingValue::Bool(_)
+            | SettingValue::Int(_)
+            | SettingValue::Number(_)
+            | SettingValue::Choice(_)
+            | SettingValue::UnknownCode(_) => self.encode(value),
+        }
+    }
+
+    /// Two values as texts with their units, "-" for none; with their registers where those alone differ.
+    pub fn format_both(&self, values: [Option<SettingValue>; 2]) -> [String; 2] {
+        let texts = values.map(|value| value.map_or_else(|| "-".to_owned(), |value| self.format(value)));
+        match values {
+            [Some(left), Some(right)] if left != right && texts[0] == texts[1] => {
+                [left, right].map(|value| match self.register_of(value) {
+                    Some(raw) => format!("{} (register {raw})", self.format(value)),
+                    None => self.format(value),
+                })
+            }
+            _ => texts,
+        }
     }
 
     /// The row's range as text: "10.0 V to 60.0 V"; empty for yes or no and for choices.
@@ -377,9 +403,10 @@ impl Row {
         let number = match (self.kind, value) {
             (Kind::Int, SettingValue::Int(number)) => number as f64,
             // Compared by step, so that a bound written as 60.0 and a reading of 60.00 agree.
-            (Kind::Fixed { .. }, SettingValue::Number(number)) => {
-                self.coding.to_physical(self.coding.to_raw(number))
-            }
+            (
+                Kind::Fixed { .. },
+                SettingValue::Number(number) | SettingValue::Signed(Signed { number, .. }),
+            ) => self.coding.to_physical(self.coding.to_raw(number)),
             _ => return None,
         };
         if number > self.range.max {

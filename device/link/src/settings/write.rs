@@ -69,6 +69,7 @@ pub fn write(
     let mut writer = Writer {
         wire,
         table,
+        options,
         before: before.image,
         wanted: settled,
         changes,
@@ -107,6 +108,7 @@ fn changes_of(table: &SettingsTable, before: &SettingsImage, wanted: &SettingsIm
 struct Writer<'w> {
     wire: &'w mut dyn Wire,
     table: &'w SettingsTable,
+    options: WriteOptions,
     before: SettingsImage,
     wanted: SettingsImage,
     changes: SettingsImage,
@@ -188,6 +190,9 @@ impl Writer<'_> {
 
     fn report(mut self, plan: Plan) -> WriteReport {
         let mut found = self.read_back();
+        if self.send_registers(&found.image) {
+            found = self.read_back();
+        }
         let mut warnings = plan.warnings;
         warnings.extend(self.disturbed_neighbours(&found.image));
         for step in plan.steps.iter().filter(|step| step.stage >= Stage::Address) {
@@ -201,6 +206,25 @@ impl Writer<'_> {
             address: self.wire.address(),
             transactions: self.transactions,
         }
+    }
+
+    /// Sends the registers of values that came back with the meaning that was wanted and another number: the usual form goes out first,
+    /// since which sign a firmware takes is not public, and what was read from a unit once only where that form did not bring it back.
+    /// Whether anything was sent.
+    fn send_registers(&mut self, found: &SettingsImage) -> bool {
+        let means_the_same = |row: &&Row| {
+            let both = self.changes.get(&row.key).zip(found.get(&row.key));
+            both.is_some_and(|(wanted, now)| wanted != now && row.encode(wanted) == row.encode(now))
+        };
+        let rows = self.table.rows().iter().filter(means_the_same);
+        let odd: SettingsImage =
+            rows.filter_map(|row| Some((row.key.clone(), self.changes.get(&row.key)?))).collect();
+        if odd.is_empty() || self.ended.is_some() {
+            return false;
+        }
+        let Ok(plan) = plan(self.table, found, &odd, self.options) else { return false };
+        plan.steps.iter().for_each(|step| self.send(step));
+        true
     }
 
     /// Rows that nobody wanted changed and that came back changed.
@@ -292,7 +316,7 @@ impl Writer<'_> {
         let read = found.image.get(&row.key);
         let state = match read {
             _ if !to_change => RowState::Taken,
-            Some(read) if row.encode(read) == row.encode(wanted) => RowState::Taken,
+            Some(read) if read == wanted => RowState::Taken,
             _ if !was_sent => RowState::NotSent { why: self.why_not_sent(&row.key) },
             Some(_) => RowState::DidNotTake { why: self.fault_of(&row.key) },
             None => RowState::Unverified { why: found.why.clone().unwrap_or_default() },

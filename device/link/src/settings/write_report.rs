@@ -94,8 +94,9 @@ impl WriteReport {
 
 impl RowOutcome {
     fn sentence(&self, row: &Row) -> Message {
-        let (title, wanted) = (row.title(), row.format(self.wanted));
-        let found = self.found.map_or_else(|| "unknown".to_owned(), |found| row.format(found));
+        let title = row.title();
+        let [wanted, found] = row.format_both([Some(self.wanted), self.found]);
+        let found = if self.found.is_some() { found } else { "unknown".to_owned() };
         match self.state.clone() {
             RowState::Taken => WriteMessage::Taken { title, wanted },
             RowState::DidNotTake { why } if why.is_empty() => WriteMessage::NotTaken { title, wanted, found },

@@ -1,6 +1,6 @@
 //! The voltage clamp test on the settings screen: what is set, what runs, what was found.
 
-use brushwork_link::{Event, JobEnding, SettingValue};
+use brushwork_link::{Event, JobEnding};
 use brushwork_values::Motor;
 use crossbeam_channel::Receiver;
 
@@ -82,13 +82,8 @@ impl ClampTest {
 /// A little above the unit's own maximum, and not above what its model stands.
 fn first_limit(unit: &UnitSettings) -> Option<f64> {
     let row = unit.table().row("limits.main_battery.max_volts")?;
-    match unit.on_controller(&row.key)? {
-        SettingValue::Number(volts) => Some((volts + ABOVE_MAXIMUM_VOLTS).min(row.range.max)),
-        SettingValue::Bool(_)
-        | SettingValue::Int(_)
-        | SettingValue::Choice(_)
-        | SettingValue::UnknownCode(_) => None,
-    }
+    let volts = unit.on_controller(&row.key)?.number()?;
+    Some((volts + ABOVE_MAXIMUM_VOLTS).min(row.range.max))
 }
 
 fn verdict(task: &Task, steps: &[Step], ending: &JobEnding) -> Verdict {

@@ -63,13 +63,7 @@ fn bus(row: &Row, wanted: impl Fn(&str) -> Option<SettingValue>) -> Option<&'sta
 }
 
 fn choice(value: Option<SettingValue>) -> Option<&'static str> {
-    match value? {
-        SettingValue::Choice(key) => Some(key),
-        SettingValue::Bool(_)
-        | SettingValue::Int(_)
-        | SettingValue::Number(_)
-        | SettingValue::UnknownCode(_) => None,
-    }
+    value?.choice()
 }
 
 #[cfg(test)]

@@ -67,13 +67,7 @@ impl Connection {
     }
 
     fn setting(&self, register: &Register) -> Option<i64> {
-        match self.settings.unit()?.confirmed(&key(register))? {
-            SettingValue::Int(value) => Some(value),
-            SettingValue::Bool(_)
-            | SettingValue::Number(_)
-            | SettingValue::Choice(_)
-            | SettingValue::UnknownCode(_) => None,
-        }
+        self.settings.unit()?.confirmed(&key(register))?.int()
     }
 
     /// Raw register values as settings, as far as the unit's table has them.

@@ -8,7 +8,7 @@ use crate::unit::UnitAddress;
 use brushwork_values::Message;
 
 /// The schema this program writes, and the newest it reads.
-pub const SCHEMA: u64 = 2;
+pub const SCHEMA: u64 = 3;
 /// What the "format" member of a profile says.
 pub const FORMAT: &str = "brushwork-settings";
 

@@ -179,11 +179,9 @@ impl<'f> Fitter<'f> {
 }
 
 fn is_same_number(value: SettingValue, fitted: SettingValue) -> bool {
-    match (value, fitted) {
-        (SettingValue::Number(old), SettingValue::Number(new)) => {
-            (old - new).abs() <= 1e-9 * old.abs().max(new.abs())
-        }
-        (old, new) => old == new,
+    match (value.number(), fitted.number()) {
+        (Some(old), Some(new)) => (old - new).abs() <= 1e-9 * old.abs().max(new.abs()),
+        _ => value == fitted,
     }
 }
 

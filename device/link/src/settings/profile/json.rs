@@ -39,17 +39,22 @@ pub(super) fn write(profile: &Profile) -> String {
     text
 }
 
+/// What a value means, and the register that it stands for.
 fn entry(row: &Row, value: SettingValue) -> String {
     let shown = match value {
-        SettingValue::Bool(on) => on.to_string(),
-        SettingValue::Int(_) | SettingValue::Number(_) => row.format_bare(value),
-        SettingValue::Choice(key) => quote(key),
-        SettingValue::UnknownCode(raw) => return format!("{{ \"code\": {raw} }}"),
+        SettingValue::Bool(on) => Some(on.to_string()),
+        SettingValue::Int(_) | SettingValue::Number(_) | SettingValue::Signed(_) => {
+            Some(row.format_bare(value))
+        }
+        SettingValue::Choice(key) => Some(quote(key)),
+        SettingValue::UnknownCode(_) => None,
     };
-    match row.unit.symbol() {
-        "" => format!("{{ \"value\": {shown} }}"),
-        unit => format!("{{ \"value\": {shown}, \"unit\": {} }}", quote(unit)),
-    }
+    let unit = Some(row.unit.symbol()).filter(|unit| !unit.is_empty() && shown.is_some()).map(quote);
+    // A value of another kind than its row has no register; it is shown all the same.
+    let raw = row.register_of(value).map(|raw| raw.to_string());
+    let members = [("value", shown), ("unit", unit), ("raw", raw)];
+    let members = members.into_iter().filter_map(|(name, text)| Some(format!("\"{name}\": {}", text?)));
+    format!("{{ {} }}", members.collect::<Vec<_>>().join(", "))
 }
 
 /// `text` as a JSON string.

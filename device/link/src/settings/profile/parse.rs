@@ -211,10 +211,13 @@ impl Reader<'_> {
     fn setting(&mut self, row: &Row, node: &Node) -> Option<SettingValue> {
         let path = setting_path(&row.key);
         let value = match read_entry(row, node) {
-            Ok(value) => value,
-            Err(why) => {
+            Ok((value, edited)) => {
+                self.warnings.extend(edited.map(|sentence| self.located(&path, sentence)));
+                value
+            }
+            Err((register, why)) => {
                 self.minor(&path, why);
-                return None;
+                row.decode(register?)
             }
         };
         // What may stand in a controller, out of range or without a name, may stand in a profile too.
@@ -265,21 +268,44 @@ fn unknown_setting(subject: &Subject) -> ProfileMessage {
     ProfileMessage::NoSuchSetting { model: subject.model.name, generation: subject.generation }
 }
 
-/// The value of `{ "value": ..., "unit": ... }` or `{ "code": ... }`, not yet checked against the range.
-fn read_entry(row: &Row, node: &Node) -> Result<SettingValue, ProfileMessage> {
+/// A value and what is to be said of it, or a fault and the register beside it.
+type Entry = Result<(SettingValue, Option<ProfileMessage>), (Option<i64>, ProfileMessage)>;
+
+/// The value of `{ "value": ..., "unit": ..., "raw": ... }`, not yet checked against the range: what its register means, unless somebody
+/// changed the value beside it, which a sentence says then. An error comes with the register, which counts where faults are corrected.
+fn read_entry(row: &Row, node: &Node) -> Entry {
     let Node::Object(members) = node else {
-        return Err(expected("an object with a \"value\"", Some(node)));
+        return Err((None, expected("an object with a \"value\"", Some(node))));
     };
     if let Some((name, _)) =
-        members.iter().find(|(name, _)| !matches!(name.as_str(), "value" | "unit" | "code"))
+        members.iter().find(|(name, _)| !matches!(name.as_str(), "value" | "unit" | "raw"))
     {
-        return Err(ProfileMessage::NoSuchSettingMember { name: quote(name) });
+        return Err((None, ProfileMessage::NoSuchSettingMember { name: quote(name) }));
     }
-    if let (Some(Node::Int(raw)), Kind::Bool | Kind::Choice(_)) = (find(members, "code"), row.kind) {
-        return Ok(row.decode(*raw));
+    let register = match find(members, "raw") {
+        None => None,
+        Some(Node::Int(raw)) => Some(*raw),
+        Some(other) => return Err((None, expected("a whole number as \"raw\"", Some(other)))),
+    };
+    let (value, unit) = (find(members, "value"), find(members, "unit"));
+    let Some(raw) = register else {
+        let value = check_unit(row, unit).and_then(|()| read_value(row, value));
+        return value.map(|value| (value, None)).map_err(|why| (None, why));
+    };
+    let held = row.decode(raw);
+    // Without a name there is the number alone. A program that had no names for the row wrote it twice.
+    let is_named = matches!(row.kind, Kind::Bool | Kind::Choice(_));
+    let is_twice = is_named && matches!(value, Some(Node::Int(value)) if *value == raw);
+    if is_twice || value.is_none() && unit.is_none() {
+        return Ok((held, None));
     }
-    check_unit(row, find(members, "unit"))?;
-    read_value(row, find(members, "value"))
+    let value = check_unit(row, unit).and_then(|()| read_value(row, value));
+    let value = value.map_err(|why| (register, why))?;
+    if row.encode(value) == row.encode(held) {
+        return Ok((held, None));
+    }
+    let (said, held) = (row.format(value), row.format(held));
+    Ok((value, Some(ProfileMessage::ValueChanged { said, raw, held })))
 }
 
 fn check_unit(row: &Row, unit: Option<&Node>) -> Result<(), ProfileMessage> {

@@ -19,7 +19,8 @@ struct Step {
 }
 
 /// One step for each older schema, in order.
-static STEPS: &[Step] = &[Step { from: 1, apply: name_unit_and_note }];
+static STEPS: &[Step] =
+    &[Step { from: 1, apply: name_unit_and_note }, Step { from: 2, apply: name_raw_numbers }];
 
 /// Brings members of schema `from` to the newest one, and says what that changed.
 pub(super) fn upgrade(mut members: Members, from: u64) -> (Members, Vec<Message>) {
@@ -43,6 +44,22 @@ fn name_unit_and_note(members: &mut Members) -> Vec<Message> {
         }
     }
     sentences
+}
+
+/// Schema 3 keeps the register of every setting beside its meaning. What schema 2 called a code is one.
+fn name_raw_numbers(members: &mut Members) -> Vec<Message> {
+    let settings = members.iter_mut().filter(|(member, _)| member == "settings");
+    for (_, settings) in settings {
+        let Node::Object(settings) = settings else { continue };
+        for (_, setting) in settings {
+            let Node::Object(setting) = setting else { continue };
+            for (name, _) in setting.iter_mut().filter(|(name, _)| name == "code") {
+                "raw".clone_into(name);
+            }
+        }
+    }
+    // Every value is what it was: there is nothing to tell.
+    Vec::new()
 }
 
 fn set(members: &mut Members, name: &str, value: Node) {

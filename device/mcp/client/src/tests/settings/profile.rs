@@ -6,7 +6,7 @@ use brushwork_mcp_wire::packet_serial::{Address, Generation};
 
 use crate::tests::settings::table;
 use brushwork_link::settings::{
-    OpenedProfile, Profile, SettingValue, SettingsTable, Strictness, WriteOptions, diff,
+    OpenedProfile, Profile, SettingValue, SettingsTable, Signed, Strictness, WriteOptions, diff,
 };
 
 fn profile(model: &str, generation: Generation) -> Profile {
@@ -26,7 +26,7 @@ fn profile(model: &str, generation: Generation) -> Profile {
 /// A valid profile with two settings, as text.
 const SMALL: &str = r#"{
   "format": "brushwork-settings",
-  "schema": 2,
+  "schema": 3,
   "model": "mcp266",
   "firmware": "MCP266 2x60A v1.0.0",
   "generation": 1,
@@ -63,11 +63,16 @@ fn a_profile_is_json_with_one_line_per_setting_and_its_unit() {
     let text = profile("mcp266", Generation::Gen1).to_json();
     assert!(serde_json::from_str::<serde_json::Value>(&text).is_ok());
     assert!(
-        text.contains("\n    \"limits.main_battery.max_volts\": { \"value\": 60.0, \"unit\": \"V\" },\n"),
+        text.contains(
+            "\n    \"limits.main_battery.max_volts\": { \"value\": 60.0, \"unit\": \"V\", \"raw\": 600 },\n"
+        ),
         "{text}"
     );
-    assert!(text.contains("\n    \"motor1.velocity.i\": { \"value\": 0.500 },\n"), "{text}");
-    assert!(text.contains("\n    \"unit.estop_reset\": { \"value\": \"hardware\" },\n"), "{text}");
+    assert!(text.contains("\n    \"motor1.velocity.i\": { \"value\": 0.500, \"raw\": 32768 },\n"), "{text}");
+    assert!(
+        text.contains("\n    \"unit.estop_reset\": { \"value\": \"hardware\", \"raw\": 0 },\n"),
+        "{text}"
+    );
 }
 
 #[test]
@@ -88,7 +93,7 @@ fn broken(from: &str, to: &str) -> Vec<String> {
 #[test]
 fn each_fault_is_told_with_its_place() {
     for (from, to, expected) in [
-        ("\"schema\": 2,", "\"schema\": 2", "line 4, column 3: Not JSON: expected `,` or `}`."),
+        ("\"schema\": 3,", "\"schema\": 3", "line 4, column 3: Not JSON: expected `,` or `}`."),
         ("}\n}", "}", "line 16, column 0: Not JSON: EOF while parsing an object."),
         (
             "brushwork-settings",
@@ -96,13 +101,13 @@ fn each_fault_is_told_with_its_place() {
             "This is no settings profile: it does not say \"format\": \"brushwork-settings\".",
         ),
         (
-            "\"schema\": 2",
             "\"schema\": 3",
-            "schema (line 3, column 3): The profile has schema 3, this program reads up to 2. A newer \
+            "\"schema\": 4",
+            "schema (line 3, column 3): The profile has schema 4, this program reads up to 3. A newer \
              program wrote it.",
         ),
         (
-            "\"schema\": 2",
+            "\"schema\": 3",
             "\"schema\": \"1\"",
             "schema (line 3, column 3): Expected a schema number from 1, got a text.",
         ),
@@ -165,6 +170,53 @@ fn each_fault_is_told_with_its_place() {
         ),
         ["settings.unit.mixing (line 13, column 5): The setting stands twice."]
     );
+}
+
+#[test]
+fn the_register_counts_unless_the_value_beside_it_was_changed() {
+    let read = |entry: &str, strictness| {
+        let text = SMALL.replace("{ \"value\": 24.3, \"unit\": \"V\" }", entry);
+        let text = text.replace("limits.main_battery.max_volts", "motor1.current.min_amps");
+        let key = "motor1.current.min_amps";
+        Profile::read(&text, strictness)
+            .map(|opened| (opened.profile.settings.get(key), opened.corrected))
+            .map_err(|error| error.to_string())
+    };
+    let signed = |raw| Some(SettingValue::Signed(Signed { number: -5.0, raw }));
+    let whole = |entry| {
+        let (value, corrected) = read(entry, Strictness::Refuse).expect("it is right");
+        assert_eq!(corrected, []);
+        value
+    };
+    // Units report the minimum current with either sign.
+    assert_eq!(whole(r#"{ "value": -5.00, "unit": "A", "raw": 500 }"#), signed(500));
+    assert_eq!(whole(r#"{ "value": -5.00, "unit": "A", "raw": -500 }"#), signed(-500));
+    assert_eq!(whole(r#"{ "raw": 500 }"#), signed(500));
+    assert_ne!(signed(500), signed(-500));
+    let typed = whole(r#"{ "value": -5.00, "unit": "A" }"#);
+    assert!(typed == signed(500) && typed == signed(-500), "who typed it said nothing of a sign");
+    let edited = r#"{ "value": -4.00, "unit": "A", "raw": 500 }"#;
+    let (value, said) = read(edited, Strictness::Refuse).expect("people change files");
+    assert_eq!(value, Some(SettingValue::Number(-4.0)));
+    assert_eq!(
+        said[0].to_string(),
+        "settings.motor1.current.min_amps (line 14, column 5): It says -4.00 A, and its \"raw\" 500 is -5.00 A: -4.00 A counts."
+    );
+    // What cannot be understood is refused, and comes back from a backup all the same.
+    let foreign = r#"{ "value": "five", "raw": 500 }"#;
+    assert!(read(foreign, Strictness::Refuse).is_err());
+    let (value, said) = read(foreign, Strictness::Repair).expect("the file as a whole is right");
+    assert_eq!((value, said.len()), (signed(500), 1));
+    let odd = r#"{ "value": -5.00, "unit": "A", "raw": "500" }"#;
+    assert!(read(odd, Strictness::Refuse).unwrap_err().contains("Expected a whole number as \"raw\""));
+}
+
+#[test]
+fn a_program_that_had_no_name_for_a_number_wrote_it_twice_and_it_is_still_read() {
+    let text = SMALL.replace("{ \"value\": true }", "{ \"value\": 1, \"raw\": 1 }");
+    let profile = Profile::parse(&text).expect("the number is a name by now");
+    assert_eq!(profile.settings.get("unit.mixing"), Some(SettingValue::Bool(true)));
+    assert!(Profile::parse(&text.replace("\"raw\": 1", "\"raw\": 0")).is_err());
 }
 
 #[test]
