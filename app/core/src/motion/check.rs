@@ -522,7 +522,16 @@ mod tests {
 
     /// What is found of sweeps every so many ms from the command on, whose values go by the time since it.
     fn found(check: &mut MotionCheck, every_ms: u64, of: impl Fn(u64) -> Vec<(Channel, f64)>) -> Vec<Kind> {
-        let times = (1..6000 / every_ms).map(|number| number * every_ms);
+        found_in(6000, check, every_ms, of)
+    }
+
+    fn found_in(
+        within_ms: u64,
+        check: &mut MotionCheck,
+        every_ms: u64,
+        of: impl Fn(u64) -> Vec<(Channel, f64)>,
+    ) -> Vec<Kind> {
+        let times = (1..within_ms / every_ms).map(|number| number * every_ms);
         times.filter_map(|ms| check.take(&sweep(1000 + ms, &of(ms)))).map(|finding| finding.kind).collect()
     }
 
@@ -620,6 +629,8 @@ mod tests {
         };
         let speed = DriveCommand::Speed { speed_counts_per_s: 3000, accel_counts_per_s2: None };
         assert_eq!(found(&mut driven(speed), 20, swings), [Kind::LimitCycle]);
-        assert_eq!(found(&mut driven(speed), 700, swings), [Kind::LimitCycle], "a slow line sees it too");
+        // Eight reversals that are 700 ms apart take longer than is looked back where readings are many.
+        let slow = found_in(12_000, &mut driven(speed), 700, swings);
+        assert_eq!(slow, [Kind::LimitCycle], "a slow line sees it too");
     }
 }
