@@ -133,6 +133,8 @@ messages! {
         WorksWithThem { count: usize } "The controller works with the values that were to be saved ({count} new). Whether its EEPROM has them is not known if it kept its power since: save again to be sure.",
         AllNew { settings: Message } "All {settings} hold the new value.",
         AllOld { settings: Message } "All {settings} hold the old value.",
+        TheOneNew "The one setting holds the new value.",
+        TheOneOld "The one setting holds the old value.",
         Mixed { counts: Listed } "The controller holds a mix: {counts}.",
         New { count: usize } "{count} new",
         Old { count: usize } "{count} old",

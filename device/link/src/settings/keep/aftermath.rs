@@ -120,6 +120,8 @@ impl Aftermath {
             }
             (true, true, _) => AftermathMessage::NoneToChange,
             (true, _, Act::Save) => AftermathMessage::WorksWithThem { count: self.new.len() },
+            (true, ..) if self.new.len() == 1 => AftermathMessage::TheOneNew,
+            (_, true, _) if self.old.len() == 1 => AftermathMessage::TheOneOld,
             (true, ..) => AftermathMessage::AllNew { settings: settings(self.new.len()) },
             (_, true, _) => AftermathMessage::AllOld { settings: settings(self.old.len()) },
             _ => AftermathMessage::Mixed { counts: self.counts() },
