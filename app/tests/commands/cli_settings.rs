@@ -139,11 +139,7 @@ fn a_difference_is_shown_and_has_its_own_exit_code() {
     let (folder, file) = exported("sim:mcp266");
     let other = folder.path().join("other.json");
     std::fs::copy(&file, &other).unwrap();
-    edit(
-        &other,
-        "\"motor1.velocity.p\": { \"value\": 1.000 }",
-        "\"motor1.velocity.p\": { \"value\": 3.000 }",
-    );
+    edit(&other, "\"motor1.velocity.p\": { \"value\": 1.000", "\"motor1.velocity.p\": { \"value\": 3.000");
     for arguments in [vec!["diff", name(&other)], vec!["diff", name(&file), name(&other)]] {
         settings(&arguments)
             .ended_with(DIFFERENT)
@@ -175,7 +171,7 @@ fn an_export_replaces_the_whole_file_or_nothing() {
 fn a_faulty_profile_is_refused_with_the_place_of_the_fault() {
     let faults = [
         ("{\n", "{{\n", "line 1, column 2"),
-        ("\"schema\": 2", "\"schema\": 99", "schema (line"),
+        ("\"schema\": 3", "\"schema\": 99", "schema (line"),
         ("motor1.velocity.p", "motor1.velocity.pp", "settings.motor1.velocity.pp (line"),
         (
             "\"motor1.velocity.p\": { \"value\": 1.000",

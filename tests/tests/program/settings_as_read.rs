@@ -26,7 +26,7 @@ use brushwork_motion_mind_wire::{Address as MindAddress, Mode, Protocol, REGISTE
 use brushwork_plant::machine::StreamIndex;
 use brushwork_tests::virtual_line::{HiddenOf, VirtualLine};
 use brushwork_tests::virtual_link::VirtualLink;
-use brushwork_values::Kind;
+use brushwork_values::Field;
 use tempfile::TempDir;
 
 /// Random states of each model and generation.
@@ -54,14 +54,18 @@ impl Random {
     }
 }
 
-/// Where a row may not be anything: what would cut the way to the unit, and the one number of the minimum current that has no
-/// magnitude in its field.
-fn raw_of(random: &mut Random, sink: Sink, kind: Kind, now: i64) -> i64 {
-    let (low, high) = kind.limits().expect("settings are numbers");
+/// Past this program's ranges and within what the unit takes: a value beyond its valid range is not acknowledged. Left as they are: what would
+/// cut the way to the unit, and the one number of the minimum current that has no magnitude in its field.
+fn raw_of(random: &mut Random, sink: Sink, field: &Field, now: i64) -> i64 {
+    let (low, high) = field.raw_range.or(field.kind.limits()).expect("settings are numbers");
+    let is_joined = ["min_action", "max_action"].contains(&field.name);
     match (sink.command, sink.place.field) {
         (141, "address") | (145, "index") => now,
         (145, "type") if sink.index == Some(0) => now,
         (133 | 134, "min") => random.raw(low + 1, high),
+        _ if !field.codes.is_empty() && !is_joined => {
+            field.codes[random.raw(0, field.codes.len() as i64 - 1) as usize].raw
+        }
         _ => random.raw(low, high),
     }
 }
@@ -88,7 +92,7 @@ fn randomise(wire: &mut PacketWire, table: &SettingsTable, generation: Generatio
                     let place = Place { field: field.name, bits: None };
                     let sink = Sink { command, place, index };
                     let now = now(command, index, field.name).unwrap_or_default();
-                    raw_of(random, sink, field.kind, now)
+                    raw_of(random, sink, field, now)
                 }
             };
             arguments.push(value);

@@ -354,12 +354,18 @@ pub static ASSUMED: &[Assumed] = &[
     not("sim/src/settings/eeprom.rs", "Size and time of the EEPROM's rows.", EEPROM),
     not("sim/src/signals/mod.rs", "How often inputs are read, and their time-outs.", PINS),
     not("sim/src/signals/shape.rs", "The curve between an input and its command.", PINS),
+    not(
+        "sim/src/supervision/battery.rs",
+        "The voltages of a cell, and what limits detection sets.",
+        "It takes batteries of several kinds.",
+    ),
     not("sim/src/supervision/leds.rs", "How long the LEDs light.", LOOKING),
     not(
         "sim/src/supervision/limits.rs",
         "Which limits warn and which are errors.",
         "It takes voltages and temperatures beyond them.",
     ),
+    not("wire/src/canopen/eds.rs", "Which vendor, product and revision a node calls itself.", BUS),
     not("wire/src/canopen/objects.rs", "How commands lie in objects.", BUS),
     not("wire/src/codes.rs", "How actions and encoder pins are numbered.", PINS),
     not(

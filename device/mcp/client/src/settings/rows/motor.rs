@@ -50,14 +50,14 @@ pub(crate) static ROWS: &[Template] = settings! {
         "Resistance of the motor winding and its leads. Together with an inductance other than 0 it turns \
          duty commands into current (torque) commands. MCP manual 1.2.11, command 128.";
     motor("motor{n}.default_accel", "Default duty acceleration", Group::MOTOR)
-        .fixed(Unit::PercentPerSecond, DUTY_ACCEL, 0, U32_STEPS)
+        .fixed(Unit::PercentPerSecond, DUTY_ACCEL, 0, Limits::Steps(0, scale::MAX_DUTY_ACCEL_RAW))
         .assumed_default(DefaultValue::Number(ACCEL_DEFAULT_PERCENT_PER_S));
         [Form::field(READ_DEFAULT_ACCELS, SET_DEFAULT_ACCEL, &["accel_m1", "accel_m2"]).writing(&["accel"])]
         "How fast the duty rises for duty commands without an acceleration of their own, and for pulse \
          and analog inputs. 2000 %/s goes from full backward to full forward in 100 ms. MCP manual 2.4.9, \
          command 68.";
     motor("motor{n}.default_decel", "Default duty deceleration", Group::MOTOR)
-        .fixed(Unit::PercentPerSecond, DUTY_ACCEL, 0, U32_STEPS)
+        .fixed(Unit::PercentPerSecond, DUTY_ACCEL, 0, Limits::Steps(0, scale::MAX_DUTY_ACCEL_RAW))
         .assumed_default(DefaultValue::Number(ACCEL_DEFAULT_PERCENT_PER_S));
         [Form::field(READ_DEFAULT_ACCELS, SET_DEFAULT_ACCEL, &["decel_m1", "decel_m2"]).only(GEN2, GEN4)
             .writing(&["decel"])]
