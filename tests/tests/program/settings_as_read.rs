@@ -82,6 +82,12 @@ fn randomise(wire: &mut PacketWire, table: &SettingsTable, generation: Generatio
         })?;
         row.encode(before.get(&row.key)?)
     };
+    // First, since a pin that is given another type is no digital input any more.
+    let address = wire.address();
+    for row in table.rows().iter().filter(|row| !row.has_wire_form()) {
+        let hidden = wire.hidden_settings().expect("it is simulated");
+        hidden.set(address, &row.key, random.raw(0, 0xFFFF_FFFF)).expect("the key is the table's");
+    }
     for (command, index) in sinks {
         let form = lookup(command).and_then(|command| command.form(generation)).expect("it is in the table");
         let mut arguments = Vec::new();
@@ -98,11 +104,6 @@ fn randomise(wire: &mut PacketWire, table: &SettingsTable, generation: Generatio
             arguments.push(value);
         }
         wire.transact(command, &arguments).unwrap_or_else(|error| panic!("{command}: {error}"));
-    }
-    let address = wire.address();
-    for row in table.rows().iter().filter(|row| !row.has_wire_form()) {
-        let hidden = wire.hidden_settings().expect("it is simulated");
-        hidden.set(address, &row.key, random.raw(0, 0xFFFF_FFFF)).expect("the key is the table's");
     }
 }
 
