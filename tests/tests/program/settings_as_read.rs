@@ -62,7 +62,11 @@ fn raw_of(random: &mut Random, sink: Sink, field: &Field, now: i64) -> i64 {
     match (sink.command, sink.place.field) {
         (141, "address") | (145, "index") => now,
         (145, "type") if sink.index == Some(0) => now,
-        (133 | 134, "min") => random.raw(low + 1, high),
+        // Seldom the same in two units: where only the maximum beside it changes, it is written with the usual sign.
+        (133 | 134, "min") => {
+            let magnitude = 1 + random.next() as i64 % (high - 1);
+            if random.next().is_multiple_of(2) { magnitude } else { -magnitude }
+        }
         _ if !field.codes.is_empty() && !is_joined => {
             field.codes[random.raw(0, field.codes.len() as i64 - 1) as usize].raw
         }
