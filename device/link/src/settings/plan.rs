@@ -124,6 +124,15 @@ fn refusal(table: &SettingsTable, key: &str, value: SettingValue, options: Write
     sentence.map(|sentence| Refusal { key: key.to_owned(), sentence })
 }
 
+/// How numbers are written that mean the same with either sign.
+#[derive(Clone, Copy)]
+enum Sign {
+    /// As the controller's generation has it.
+    Usual,
+    /// As it stood in the register.
+    AsRead,
+}
+
 impl PlanContext<'_> {
     /// One step for each command and index that carries a change, in stage order.
     fn steps(&self) -> (Vec<Step>, Vec<Refusal>) {
@@ -138,20 +147,9 @@ impl PlanContext<'_> {
         let mut refusals = Vec::new();
         for ((command, index), changed) in groups {
             let planned = Planned { context: self, command, index, changed: &changed };
-            match self.arguments(&planned) {
-                Ok(arguments) => {
-                    let step = Step {
-                        family,
-                        command,
-                        arguments,
-                        keys: changed.iter().map(|row| row.key.clone()).collect(),
-                        stage: family.settings().stage(&planned),
-                    };
-                    match step.fits(self.table.subject().generation) {
-                        Ok(()) => steps.push(step),
-                        Err(why) => refusals.push(no_room(&changed, why)),
-                    }
-                }
+            // One number has no usual form: the lowest of its field, where the usual form is without the sign.
+            match self.step(&planned, Sign::Usual).or_else(|_| self.step(&planned, Sign::AsRead)) {
+                Ok(step) => steps.push(step),
                 Err(refusal) => refusals.push(refusal),
             }
         }
@@ -160,7 +158,22 @@ impl PlanContext<'_> {
         (steps, refusals)
     }
 
-    fn arguments(&self, planned: &Planned<'_>) -> Result<Vec<(&'static str, i64)>, Refusal> {
+    fn step(&self, planned: &Planned<'_>, sign: Sign) -> Result<Step, Refusal> {
+        let family = self.table.subject().family();
+        let step = Step {
+            family,
+            command: planned.command,
+            arguments: self.arguments(planned, sign)?,
+            keys: planned.changed.iter().map(|row| row.key.clone()).collect(),
+            stage: family.settings().stage(planned),
+        };
+        match step.fits(self.table.subject().generation) {
+            Ok(()) => Ok(step),
+            Err(why) => Err(no_room(planned.changed, why)),
+        }
+    }
+
+    fn arguments(&self, planned: &Planned<'_>, sign: Sign) -> Result<Vec<(&'static str, i64)>, Refusal> {
         let (command, index, changed) = (planned.command, planned.index, planned.changed);
         let settings = self.table.subject().family().settings();
         let wanted = settings.arguments(planned).map_err(|why| refuse(changed, why))?;
@@ -168,7 +181,7 @@ impl PlanContext<'_> {
             Argument::Given(name, value) => Ok((name, value)),
             Argument::Field(field) => {
                 let place = Place { field, bits: None };
-                Ok((field, self.field_value(Sink { command, index, place }, changed)?))
+                Ok((field, self.field_value(Sink { command, index, place }, changed, sign)?))
             }
         };
         wanted.into_iter().map(value).collect()
@@ -176,7 +189,7 @@ impl PlanContext<'_> {
 
     /// The raw number of one field of a command: the changed value, or what the controller holds, bits put
     /// together.
-    fn field_value(&self, field: Sink, changed: &[&Row]) -> Result<i64, Refusal> {
+    fn field_value(&self, field: Sink, changed: &[&Row], sign: Sign) -> Result<i64, Refusal> {
         let of_field = |row: &&Row| {
             row.sink().is_some_and(|sink| {
                 (sink.command, sink.index, sink.place.field)
@@ -196,7 +209,10 @@ impl PlanContext<'_> {
             let raw = match (change, now) {
                 // They mean the same, so the number itself is what is wanted.
                 (Some(change), Some(now)) if row.encode(change) == row.encode(now) => row.register_of(change),
-                _ => change.or(now).and_then(|value| row.encode(value)),
+                _ => change.or(now).and_then(|value| match sign {
+                    Sign::Usual => row.encode(value),
+                    Sign::AsRead => row.register_of(value),
+                }),
             };
             let raw = raw.ok_or_else(|| unknown_neighbour(row, changed))?;
             word = match row.sink().and_then(|sink| sink.place.bits) {

@@ -208,21 +208,23 @@ impl Writer<'_> {
         }
     }
 
-    /// Sends the registers of values that came back with the meaning that was wanted and another number: the usual form goes out first,
-    /// since which sign a firmware takes is not public, and what was read from a unit once only where that form did not bring it back.
-    /// Whether anything was sent.
+    /// Sends the registers of values that came back with the right meaning and another number, of those that share a command with a
+    /// change too: the usual form goes out first, since which sign a firmware takes is not public, and what was read from a unit once
+    /// only where that form did not bring it back. Whether anything was sent.
     fn send_registers(&mut self, found: &SettingsImage) -> bool {
-        let means_the_same = |row: &&Row| {
-            let both = self.changes.get(&row.key).zip(found.get(&row.key));
-            both.is_some_and(|(wanted, now)| wanted != now && row.encode(wanted) == row.encode(now))
+        let odd_one = |row: &&Row| -> Option<(String, SettingValue)> {
+            let right = self.changes.get(&row.key).or_else(|| self.before.get(&row.key))?;
+            let now = found.get(&row.key)?;
+            let is_odd = right != now && row.encode(right) == row.encode(now) && row.sink().is_some();
+            is_odd.then(|| (row.key.clone(), right))
         };
-        let rows = self.table.rows().iter().filter(means_the_same);
-        let odd: SettingsImage =
-            rows.filter_map(|row| Some((row.key.clone(), self.changes.get(&row.key)?))).collect();
+        let odd: SettingsImage = self.involved.iter().filter_map(odd_one).collect();
         if odd.is_empty() || self.ended.is_some() {
             return false;
         }
-        let Ok(plan) = plan(self.table, found, &odd, self.options) else { return false };
+        // What nobody chose may be out of range.
+        let options = WriteOptions { as_read: true, ..self.options };
+        let Ok(plan) = plan(self.table, found, &odd, options) else { return false };
         plan.steps.iter().for_each(|step| self.send(step));
         true
     }

@@ -109,6 +109,28 @@ fn a_change_is_written_with_its_neighbours_as_they_are_and_read_back() {
 }
 
 #[test]
+fn a_neighbour_that_came_back_with_the_other_sign_gets_its_own_register() {
+    let table = table("mcp266", Generation::Gen4);
+    let write_with_minimum = |raw: i64, is_stubborn: bool| {
+        let mut unit = FakeUnit::new(&table);
+        unit.ram.insert("motor1.current.min_amps".to_owned(), raw);
+        if is_stubborn {
+            unit.stubborn.insert("motor1.current.min_amps".to_owned());
+        }
+        let report = written(&mut unit, &table, &[("motor1.current.max_amps", "20")]);
+        assert!(report.is_complete() && report.warnings.is_empty(), "{:?}", report.sentences(&table));
+        assert_eq!(unit.ram["motor1.current.min_amps"], raw);
+        unit.log.into_iter().filter(|(command, _)| *command == 133).map(|(_, sent)| sent).collect::<Vec<_>>()
+    };
+    // The usual form first. A firmware that takes it and reports the other sign needs no more.
+    assert_eq!(write_with_minimum(-500, false), [[2000, 500], [2000, -500]]);
+    assert_eq!(write_with_minimum(-500, true), [[2000, 500]]);
+    assert_eq!(write_with_minimum(500, false), [[2000, 500]]);
+    // The lowest number of the field has no magnitude in it.
+    assert_eq!(write_with_minimum(-0x8000_0000, false), [[2000, -0x8000_0000]]);
+}
+
+#[test]
 fn what_the_controller_holds_already_is_not_sent() {
     let table = table("mcp266", Generation::Gen1);
     let mut unit = FakeUnit::new(&table);
