@@ -58,7 +58,8 @@ fn stop_line(line: &LineArgs, interrupt: &Interrupt) -> Result<LineStop, Exit> {
             .map_err(|error| Exit::NoLink.saying(error))
     };
     let on_can = matches!(target, ConnectTarget::Can { .. });
-    let is_unknown = line.family == FamilyChoice::AUTO && target.family() == FamilyChoice::AUTO && !on_can;
+    let named = if target.family() == FamilyChoice::AUTO { line.family } else { target.family() };
+    let is_unknown = session::family_at(&target, named) == FamilyChoice::AUTO && !on_can;
     let mut session = open(line.family)?;
     let mut found = stop_and_find(&session, on_can, interrupt)?;
     if is_unknown && asked == Addresses::Scan {

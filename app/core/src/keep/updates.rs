@@ -34,7 +34,8 @@ impl OpenUpdate {
         format!(
             "An update of the {} at {} was begun and did not end. It may wait in its firmware loader, where it answers nothing else \
              (STAT1 and STAT2 light in turns). Switch it off and on; if it still does not answer, resume the update: \
-             brushwork firmware update {} --connect {} --resume --model {}. Its settings are in the backup {}.",
+             brushwork firmware update {} --connect {} --resume --model {}. Its settings are in the backup {}. \
+             Should a controller of another family be there now, name it: family=KEY.",
             self.before,
             self.place,
             self.file.display(),

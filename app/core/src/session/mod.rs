@@ -11,6 +11,7 @@ use brushwork_canopen::bus::Monitor;
 use brushwork_link::capability::KeepsCapabilities;
 use brushwork_link::device::{Addresses, DeviceHandle, DeviceOptions, DeviceThread, PollRate};
 use brushwork_link::driver::{CanLine, can_line};
+use brushwork_link::family::{FamilyRef, families};
 use brushwork_link::transport::{ConnectTarget, OpenError, PortInfo, Stream, Transport, list_ports, ports};
 use brushwork_link::{Clock, FamilyChoice, HiddenSettings};
 
@@ -85,7 +86,8 @@ pub fn open(
     clock: Arc<dyn Clock>,
     running: Option<Arc<Simulation>>,
 ) -> Result<Session, SessionError> {
-    if let Some(waiting) = loader_of(target, &list_ports().unwrap_or_default()) {
+    let ports = list_ports().unwrap_or_default();
+    if let Some(waiting) = loader_of(target, &ports) {
         return Err(waiting);
     }
     let (transport, simulation) = connect(target, running)?;
@@ -96,7 +98,10 @@ pub fn open(
     }
     let named = simulation.as_deref().map_or_else(|| target.family(), Simulation::family);
     let options = SessionOptions {
-        family: if named == FamilyChoice::AUTO { options.family } else { named },
+        family: match named {
+            FamilyChoice::AUTO => settled(target, options.family, &ports),
+            named => named,
+        },
         ..options
     };
     let stream = simulation.as_ref().map_or_else(|| stream_of(target), |running| Some(running.stream()));
@@ -108,6 +113,33 @@ fn loader_of(target: &ConnectTarget, ports: &[PortInfo]) -> Option<SessionError>
     let ConnectTarget::Serial { path, .. } = target else { return None };
     let port = ports.iter().find(|port| port.is_loader() && port.name == firmware::real_path(path))?;
     Some(SessionError::InLoader { port: path.clone(), product: port.product.clone().unwrap_or_default() })
+}
+
+/// The family to look for at a target: the chosen one, else the one that alone can be there.
+#[must_use]
+pub fn family_at(target: &ConnectTarget, chosen: FamilyChoice) -> FamilyChoice {
+    settled(target, chosen, &list_ports().unwrap_or_default())
+}
+
+/// A controller that waits in its firmware loader erases its program at one byte, the greeting, which the question for another
+/// family may hold. So where an update was begun and did not end, only its family is looked for; likewise on a controller's own USB.
+fn settled(target: &ConnectTarget, chosen: FamilyChoice, ports: &[PortInfo]) -> FamilyChoice {
+    if chosen != FamilyChoice::AUTO {
+        return chosen;
+    }
+    let update = Store::of_user().update_at(&target.to_string());
+    let begun =
+        |family: &&FamilyRef| update.as_ref().is_some_and(|update| family.model(&update.model).is_some());
+    let port = match target {
+        ConnectTarget::Serial { path, .. } => ports
+            .iter()
+            .find(|port| port.name == firmware::real_path(path))
+            .and_then(|port| port.product.as_deref()),
+        ConnectTarget::Tcp { .. } | ConnectTarget::Can { .. } | ConnectTarget::Sim(_) => None,
+    };
+    let plugged = |family: &&FamilyRef| port.is_some_and(|product| family.usb_product(product).is_some());
+    let only = families().iter().find(|family| begun(family) || plugged(family));
+    only.map_or(chosen, |family| FamilyChoice::of(*family))
 }
 
 /// What is known of a target at which nobody answers: an update that was begun there and did not end.
@@ -212,6 +244,21 @@ fn spawn(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn on_a_controllers_own_usb_no_other_family_is_looked_for() {
+        brushwork_link::install(&[&brushwork_mcp_client::McpDriver]);
+        let port = |product: &str| PortInfo {
+            name: "/dev/ttyACM7".to_owned(),
+            is_usb: true,
+            product: Some(product.to_owned()),
+            ..PortInfo::default()
+        };
+        let target: ConnectTarget = "/dev/ttyACM7".parse().unwrap();
+        let found = |product| settled(&target, FamilyChoice::AUTO, &[port(product)]).key();
+        assert_eq!(found("MCP266 2x60A"), "mcp");
+        assert_eq!(found("FT232R USB UART"), "auto", "an adapter may have any family behind it");
+    }
 
     #[test]
     fn a_port_that_calls_itself_a_loader_is_told_as_one_and_not_opened() {
