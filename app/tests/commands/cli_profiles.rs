@@ -96,6 +96,29 @@ fn any_two_copies_can_be_compared() {
 }
 
 #[test]
+fn a_profile_of_an_older_firmware_differs_in_what_both_have_alone_and_says_how_the_motors_brake() {
+    let (_folder, file) = exported("sim:mcp266,generation=1");
+    edit(
+        &file,
+        "\"motor1.default_accel\": { \"value\": 1999.997",
+        "\"motor1.default_accel\": { \"value\": 50",
+    );
+    let four = "sim:mcp266,generation=4";
+    let run = settings(&["diff", name(&file), "-c", four]).ended_with(DIFFERENT);
+    let run = run
+        .explains("compared as it would be on the controller of")
+        .explains("Motor 1: default duty deceleration becomes 50 %/s, since")
+        .explains("They stay as they are:")
+        .prints("motor1.default_accel 1999.997 %/s -> 50 %/s")
+        .prints("motor1.default_decel 1999.997 %/s -> 50 %/s");
+    assert!(run.stdout.starts_with("2 settings with different values"), "{run:#?}");
+    // The file comes to the unit, on whichever side that stands.
+    settings(&["compare", name(&file), "ram", "-c", four])
+        .ended_with(DIFFERENT)
+        .prints("motor1.default_decel 50 %/s -> 1999.997 %/s");
+}
+
+#[test]
 fn one_motor_is_copied_to_the_other() {
     settings(&["copy-motor", "--yes"]).ended_with(DONE).prints("there is nothing to write");
     settings(&["copy-motor", "2", "--dry-run"]).ended_with(DONE);

@@ -29,7 +29,11 @@ pub fn run(args: &CompareArgs, out: &mut Output, interrupt: &Interrupt) -> Resul
         }
     }
     let [Some(left), Some(right)] = sides else { return Err(Exit::Failed) };
-    diff::compare(&left, &fitted(&left, right), args.json, out)
+    // A file as it would be on the controller, on whichever side that stands.
+    if names[1].needs_controller() && !names[0].needs_controller() {
+        return diff::compare(&diff::fitted(&right, left), &right, args.json, out);
+    }
+    diff::compare(&left, &diff::fitted(&left, right), args.json, out)
 }
 
 fn side(name: &SideName, controller: Option<&Controller<'_>>, other: Option<Side>) -> Result<Side, Exit> {
@@ -84,15 +88,4 @@ fn backup(name: &str) -> Result<Side, Exit> {
 fn opened(opened: brushwork_link::settings::OpenedProfile) -> Profile {
     opened.upgraded.iter().for_each(say);
     opened.profile
-}
-
-/// The right side as it would be on the left side's controller, so that like is compared with like.
-fn fitted(left: &Side, right: Side) -> Side {
-    let fitted = right.profile.fitted_to(&left.profile.table());
-    if fitted.changes.is_empty() {
-        return right;
-    }
-    say(format!("{} is compared as it would be on the controller of {}:", right.name, left.name));
-    fitted.changes.iter().for_each(say);
-    Side::new(right.name, fitted.profile)
 }

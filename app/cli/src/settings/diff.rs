@@ -31,10 +31,10 @@ pub fn run(args: &DiffArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
     if sides.len() < 2 {
         sides.insert(0, Side::of_controller(&Controller::connect(&args.connect, interrupt)?)?);
     }
-    let [left, right] = &sides[..] else {
+    let Ok([left, right]) = <[Side; 2]>::try_from(sides) else {
         return Err(Exit::Failed.saying("One or two profiles can be compared."));
     };
-    compare(left, right, args.json, out)
+    compare(&left, &fitted(&left, right), args.json, out)
 }
 
 impl Side {
@@ -52,6 +52,17 @@ impl Side {
     fn subject(&self) -> &Subject {
         self.table.subject()
     }
+}
+
+/// The other side as it would be on one's controller, so that like is compared with like.
+pub fn fitted(one: &Side, other: Side) -> Side {
+    let fitted = other.profile.fitted_to(&one.table);
+    if fitted.changes.is_empty() {
+        return other;
+    }
+    say(format!("{} is compared as it would be on the controller of {}:", other.name, one.name));
+    fitted.changes.iter().for_each(say);
+    Side::new(other.name, fitted.profile)
 }
 
 /// Prints what differs, from the left side to the right one.

@@ -133,6 +133,30 @@ pub trait FamilySettings: Send + Sync {
     ) -> Option<(SettingValue, Message)> {
         None
     }
+
+    /// Settings over there that follow from others of the profile, since the two controllers divide things otherwise.
+    fn conversions(&self, _fit: &Fit<'_>) -> Vec<Conversion> {
+        Vec::new()
+    }
+
+    /// What changes in the motion where a setting of a profile has no place over there, as a sentence; `None` for one that moves, stops and
+    /// limits nothing by itself.
+    fn without(&self, _row: &Row) -> Option<Message> {
+        None
+    }
+}
+
+/// A setting over there that takes its value from another one of the profile.
+#[derive(Clone, Debug)]
+pub struct Conversion {
+    /// The key in the profile.
+    pub from: &'static str,
+    /// The key over there.
+    pub to: &'static str,
+    /// What the user should know of it; empty where nothing changes.
+    pub told: Message,
+    /// A further key of the profile that the setting stands for.
+    pub absorbed: Option<&'static str>,
 }
 
 /// The commands whose replies have a record for each thing.
@@ -186,6 +210,8 @@ pub enum Argument {
 pub struct Fit<'f> {
     /// The profile.
     pub profile: &'f Profile,
+    /// The rows of its own controller.
+    pub from: &'f SettingsTable,
     /// The other controller.
     pub to: &'f SettingsTable,
 }

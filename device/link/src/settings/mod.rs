@@ -29,7 +29,7 @@ mod write_report;
 pub use copies::{Copies, Copy};
 pub use copy::{CopiedMotor, copy_motor};
 pub use difference::{Difference, changes, diff};
-pub use family::{Argument, FamilySettings, Fit, Lists, PlanContext, Planned};
+pub use family::{Argument, Conversion, FamilySettings, Fit, Lists, PlanContext, Planned};
 pub use image::SettingsImage;
 pub use keep::{
     Act, Aftermath, Ending, Entry, Held, Journal, JournalError, Keeper, Known, begin_command, begin_trial,

@@ -24,6 +24,39 @@ messages! {
         TorqueControl { motor: usize } "Motor {motor} has both L and R then: duty commands set its current instead of its voltage, and duty 0 lets it coast.",
         InputCommands { pin: String, target: String, kind: &'static str, level: usize } "{pin} commands {target} as soon as this is written, since {kind} inputs are at priority level {level}: the motor can start.",
         NoSuchInput { pin: &'static str, kind: String, model: &'static str } "{pin} cannot be {kind} on the {model}; it measures nothing instead.",
+        Divided { title: String, value: String, one: String } "{title} becomes {value}, since \"{one}\" counted for it before.",
+        Joined { title: String, lost: String, kept: String, one: String, effect: Message } "{title} {lost} has no setting of its own there: {kept} counts for it too, as \"{one}\". {effect}",
+        NoAutomaticReset "This firmware has no automatic E-Stop reset. Hardware is used instead: an emergency stop lasts until the hardware is reset, and does not end by itself.",
+    }
+}
+
+messages! {
+    /// What changes in the motion where the other controller lacks a setting.
+    pub enum WithoutMessage {
+        OneAcceleration "The motor brakes as fast as it accelerates.",
+        OnePwmMode "The bridge switches, and brakes between pulses, as that of the other motor.",
+        OneDeadband "This input leaves its center at another place.",
+        FixedMaximum "The main battery maximum does not follow the voltage at power up: the fixed maximum counts.",
+        UncorrectedVolts "Voltages are read without the correction, so the voltage limits act that much earlier or later.",
+        NoDefaultSpeed "Position commands without a speed of their own use the whole top speed.",
+        NoIdle "What the bridge does after a stop is up to the firmware.",
+        NoErrorLimit "The controller does not stop a motor that falls behind.",
+        NoHomingDuty "The duty with which the motor looks for its home switch is no setting there.",
+        NoHomingTimeout "The time for which the motor looks for its home switch is no setting there.",
+        NoTimeout "This time-out does not stop the motors when the computer falls silent.",
+        NotMixed "The inputs are not mixed.",
+        NotBridged "Each channel drives a motor of its own: do not wire one motor to both.",
+        OtherCommander "What commands the motors is set otherwise there.",
+        NoScript "No script starts by itself.",
+        CommandsNothing "This input commands no motor.",
+        StopsNothing "This input is no limit switch, home switch or E-Stop.",
+        SwitchesNothing "This output switches nothing: no brake, no voltage clamp.",
+        PinDoesNothing "This pin is no E-Stop, voltage clamp, brake, limit or home switch.",
+        NoCells "The number of cells sets no limit: the voltage limits count.",
+        EncodersNotSwapped "The encoder inputs stay with their own motors.",
+        NoDeadband "The input has no deadband, so that a stick that is not quite at its center can move a motor.",
+        OtherInputRange "The input reaches its ends at other places.",
+        OtherEncoder "Which encoder the motor has, and which way it counts, is set otherwise there: try it before a loop is closed.",
     }
 }
 

@@ -1,10 +1,12 @@
 //! A profile made for one controller, fitted to another: other model, other firmware generation, other numbers
 //! of pins, streams and outputs. Every change is told in a sentence.
 
-use super::super::family::{FamilySettings, Fit};
+use std::collections::BTreeSet;
+
+use super::super::family::{Conversion, FamilySettings, Fit};
 use super::super::image::SettingsImage;
 use super::super::kind::Kind;
-use super::super::row::{Group, Row};
+use super::super::row::{Access, Group, Row};
 use super::super::subject::Subject;
 use super::super::table::SettingsTable;
 use super::super::value::SettingValue;
@@ -31,6 +33,7 @@ impl Profile {
         fitter.tell_kind();
         fitter.settings();
         fitter.tell_left_out();
+        fitter.tell_besides();
         let profile = Profile { subject: *table.subject(), settings: fitter.image, ..self.clone() };
         Fitted { profile, changes: fitter.changes }
     }
@@ -44,6 +47,8 @@ struct Fitter<'f> {
     changes: Vec<Message>,
     /// What the settings of one thing (a pin, a group) have nowhere to go to: its name, and what was lost there.
     left_out: Vec<LeftOut>,
+    /// The keys over there for which the profile's controller has a setting.
+    reached: BTreeSet<String>,
 }
 
 struct LeftOut {
@@ -51,6 +56,8 @@ struct LeftOut {
     count: usize,
     /// Those not at their default, as "deadband 3.0 %".
     worth_naming: Vec<String>,
+    /// What changes in the motion without those.
+    follows: Vec<Message>,
 }
 
 impl<'f> Fitter<'f> {
@@ -62,6 +69,7 @@ impl<'f> Fitter<'f> {
             image: SettingsImage::default(),
             changes: Vec::new(),
             left_out: Vec::new(),
+            reached: BTreeSet::new(),
         }
     }
 
@@ -82,16 +90,34 @@ impl<'f> Fitter<'f> {
     fn settings(&mut self) {
         let rows = self.from.rows().to_vec();
         let mut moved_pins = Vec::new();
+        let conversions = self.family().conversions(&self.fit());
+        let is_converted = |key: &str| {
+            conversions.iter().any(|conversion| conversion.from == key || conversion.absorbed == Some(key))
+        };
         for row in &rows {
-            let Some(value) = self.profile.settings.get(&row.key) else { continue };
             let key = self.family().key_there(&self.fit(), row);
+            self.reached.extend(key.clone());
+            let Some(value) = self.profile.settings.get(&row.key) else { continue };
             match key.and_then(|key| self.to.row(&key).cloned()) {
                 Some(there) => {
                     self.note_moved_pin(row, &there, &mut moved_pins);
                     self.take(row, &there, value);
                 }
+                None if is_converted(&row.key) => {}
                 None => self.leave_out(row, value),
             }
+        }
+        conversions.into_iter().for_each(|conversion| self.convert(conversion));
+    }
+
+    fn convert(&mut self, conversion: Conversion) {
+        let (row, there) = (self.from.row(conversion.from).cloned(), self.to.row(conversion.to).cloned());
+        let (Some(row), Some(there)) = (row, there) else { return };
+        let Some(value) = self.profile.settings.get(&row.key) else { return };
+        self.reached.insert(there.key.clone());
+        self.take(&row, &there, value);
+        if !conversion.told.is_empty() {
+            self.changes.push(conversion.told);
         }
     }
 
@@ -99,8 +125,8 @@ impl<'f> Fitter<'f> {
         self.to.subject().family().settings()
     }
 
-    fn fit(&self) -> Fit<'f> {
-        Fit { profile: self.profile, to: self.to }
+    fn fit(&self) -> Fit<'_> {
+        Fit { profile: self.profile, from: &self.from, to: self.to }
     }
 
     fn note_moved_pin(&mut self, row: &Row, there: &Row, moved: &mut Vec<usize>) {
@@ -152,21 +178,26 @@ impl<'f> Fitter<'f> {
     fn leave_out(&mut self, row: &Row, value: SettingValue) {
         let thing = row.instance.as_ref().map_or_else(|| row.title(), |instance| instance.name.clone());
         let position = self.left_out.iter().position(|left| left.thing == thing).unwrap_or_else(|| {
-            self.left_out.push(LeftOut { thing, count: 0, worth_naming: Vec::new() });
+            self.left_out.push(LeftOut { thing, count: 0, worth_naming: Vec::new(), follows: Vec::new() });
             self.left_out.len() - 1
         });
+        let follows = self.family().without(row);
         let left = &mut self.left_out[position];
         left.count += 1;
         if value != row.default {
             left.worth_naming.push(format!("{} {}", lower(row.label), row.format(value)));
+            left.follows.extend(follows.filter(|what| !left.follows.contains(what)));
         }
     }
 
-    /// One sentence for each thing whose settings went nowhere; those not at their default by name.
+    /// One sentence for each thing whose settings went nowhere; those not at their default by name, with what follows from that.
     fn tell_left_out(&mut self) {
         let (model, generation) = (self.to.subject().model.name, self.to.subject().generation);
-        for LeftOut { thing, count, worth_naming } in std::mem::take(&mut self.left_out) {
+        for LeftOut { thing, count, worth_naming, follows } in std::mem::take(&mut self.left_out) {
             let named = worth_naming.join(", ");
+            let follows =
+                follows.into_iter().map(|what| ProfileMessage::Follows { thing: thing.clone(), what });
+            let follows: Vec<Message> = follows.map(Message::from).collect();
             let told = match (count, worth_naming.is_empty()) {
                 (1, true) => ProfileMessage::DefaultLeftOut { model, generation, thing },
                 (1, false) => ProfileMessage::OneLeftOut { model, generation, thing, named },
@@ -174,6 +205,35 @@ impl<'f> Fitter<'f> {
                 (_, false) => ProfileMessage::SomeLeftOut { model, generation, thing, count, named },
             };
             self.changes.push(told.into());
+            self.changes.extend(follows);
+        }
+    }
+
+    /// What the other controller has besides, by group, thing or label, whatever says it shortest.
+    fn tell_besides(&mut self) {
+        let (from, to) = self.subjects();
+        if (from.model, from.generation) == (to.model, to.generation) {
+            return;
+        }
+        let is_besides = |row: &Row| !self.reached.contains(&row.key);
+        let settable = || self.to.rows().iter().filter(|row| !matches!(row.access, Access::ReadOnly { .. }));
+        let mut names: Vec<&str> = Vec::new();
+        for row in settable().filter(|row| is_besides(row)) {
+            let of_group = || settable().filter(|other| other.group == row.group);
+            let of_thing = || of_group().filter(|other| other.instance == row.instance);
+            let name = match &row.instance {
+                _ if of_group().all(is_besides) => row.group.label(),
+                Some(instance) if of_thing().all(is_besides) => &instance.name,
+                Some(_) | None => row.label,
+            };
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        if !names.is_empty() {
+            let named = names.join(", ");
+            let besides = ProfileMessage::Besides { model: to.model.name, generation: to.generation, named };
+            self.changes.push(besides.into());
         }
     }
 }

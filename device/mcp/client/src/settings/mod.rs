@@ -1,6 +1,7 @@
 //! The settings of MCP and RoboClaw controllers: the table of rows, and what is particular in writing, keeping and judging them.
 
 mod check;
+mod convert;
 mod fit;
 mod memory;
 mod pins;
@@ -20,8 +21,8 @@ use crate::messages::McpSettingsMessage;
 use crate::model_of;
 use brushwork_link::exchange::ExchangeError;
 use brushwork_link::settings::{
-    Argument, FamilySettings, Fit, Group, Lists, PlanContext, Planned, ReadReport, Row, SaveReport,
-    SettingValue, SettingsImage, SettingsTable, Stage, Step, Subject, WriteOptions,
+    Argument, Conversion, FamilySettings, Fit, Group, Lists, PlanContext, Planned, ReadReport, Row,
+    SaveReport, SettingValue, SettingsImage, SettingsTable, Stage, Step, Subject, WriteOptions,
 };
 use brushwork_link::unit::{FirmwareGeneration, UnitAddress};
 use brushwork_link::wire::Wire;
@@ -159,6 +160,17 @@ impl FamilySettings for McpSettings {
         there: &Row,
         value: SettingValue,
     ) -> Option<(SettingValue, Message)> {
+        if let Some(why) = convert::impossible_reset(there, value) {
+            return Some((SettingValue::Choice("hardware"), why));
+        }
         fit::impossible_type(fit, there, value).map(|why| (SettingValue::Choice("none"), why))
+    }
+
+    fn conversions(&self, fit: &Fit<'_>) -> Vec<Conversion> {
+        convert::conversions(fit)
+    }
+
+    fn without(&self, row: &Row) -> Option<Message> {
+        convert::without(row)
     }
 }

@@ -1,6 +1,7 @@
 //! What General Settings does to set two copies side by side.
 
 use brushwork_link::Message;
+use brushwork_link::messages::ProfileMessage;
 use brushwork_link::settings::{CopiedMotor, SettingsImage, copy_motor, diff};
 
 use super::{Comparison, Fitted, Side, Take};
@@ -75,12 +76,24 @@ impl GeneralView<'_> {
             }
         }
         let [left, right] = &images[..] else { return comparison };
-        for difference in diff(unit.table(), left, right).into_iter().filter(|each| each.right.is_some()) {
+        let mut one_sided: Vec<&str> = Vec::new();
+        for difference in diff(unit.table(), left, right) {
             let Some(row) = unit.table().row(&difference.key) else { continue };
+            // What one side does not have cannot differ.
+            if difference.left.is_none() || difference.right.is_none() {
+                if difference.right.is_some() && !one_sided.contains(&row.group.label()) {
+                    one_sided.push(row.group.label());
+                }
+                continue;
+            }
             match comparison.groups.last_mut().filter(|(group, _)| *group == row.group) {
                 Some((_, list)) => list.push(difference),
                 None => comparison.groups.push((row.group, vec![difference])),
             }
+        }
+        if !one_sided.is_empty() {
+            let groups = one_sided.join(", ");
+            comparison.notes.push(ProfileMessage::OneSided { groups }.into());
         }
         comparison
     }

@@ -9,6 +9,7 @@ mod memory;
 mod plan;
 mod profile;
 mod upgrade;
+mod upgrade_matrix;
 mod values;
 mod writing;
 
