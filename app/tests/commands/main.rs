@@ -7,6 +7,7 @@ mod cli;
 mod cli_as_read;
 mod cli_backups;
 mod cli_can;
+mod cli_drive;
 mod cli_files;
 mod cli_firmware;
 mod cli_profiles;

@@ -8,6 +8,7 @@ use brushwork_family::simulator;
 use brushwork_link::FamilyChoice;
 use brushwork_link::device::{ArmScope, DeviceOptions, DisarmReason, Drive, DriveCommand, Event, Request};
 use brushwork_mcp_wire::packet_serial::number;
+use brushwork_motion_mind_wire::register_number;
 use brushwork_plant::faults::{Direction, Fault, FaultEffect};
 use brushwork_plant::world::{UnitFault, WorldAction};
 use brushwork_tests::virtual_link::VirtualLink;
@@ -169,6 +170,20 @@ fn a_unit_that_lost_its_power_for_a_moment_is_never_passed_over() {
 }
 
 #[test]
+fn a_unit_whose_power_stays_away_is_silent_and_its_power_is_named() {
+    for name in UNITS {
+        let mut driven = Driven::new(name);
+        driven.begin(QUARTER);
+        driven.apply(&WorldAction::Power { on: false });
+        driven.run(5 * SECOND);
+        assert_eq!(driven.disarmed.first(), Some(&DisarmReason::NoAnswer), "{name}: {:?}", driven.findings);
+        assert_eq!(driven.findings, [], "{name}: silence is told once");
+    }
+    let sentence = DisarmReason::NoAnswer.to_string();
+    assert!(sentence.contains("does not answer any more") && sentence.contains("power"), "{sentence}");
+}
+
+#[test]
 fn a_shaft_that_is_held_is_a_stall_and_an_open_lead_is_told_from_it() {
     let mut wrong = Vec::new();
     for name in UNITS {
@@ -219,6 +234,20 @@ fn gains_that_drive_a_motor_to_and_fro_are_a_limit_cycle() {
         println!("{name}: {:?}", driven.findings);
         wrong.extend(driven.wrong(Kind::LimitCycle, &["gains are too high", "3000 counts/s"]));
     }
+    let mut driven = Driven::new("motion-mind-3,mode=4");
+    // The largest P at the smallest scale, and nothing that damps (manual 4.3).
+    for (index, value) in
+        [(register_number::PTERM, 65_535), (register_number::DTERM, 0), (register_number::PIDSCALAR, 1)]
+    {
+        let values = [index.into(), value].map(Value::Int).to_vec();
+        driven.link.ask(Request::Transact { id: index.into(), command: 0x18, values });
+        driven.run(SECOND);
+    }
+    driven.arm();
+    driven.drive(SPEED);
+    driven.run(5 * SECOND);
+    println!("motion-mind-3: {:?}", driven.findings);
+    wrong.extend(driven.wrong(Kind::LimitCycle, &["gains are too high", "3000 counts/s"]));
     assert_eq!(wrong, [""; 0]);
 }
 

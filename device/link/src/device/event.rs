@@ -211,7 +211,9 @@ impl fmt::Display for DisarmReason {
                 f.write_str("Disarmed: a time-out, stream, priority or address was changed")
             }
             Self::Restarted => f.write_str("Disarmed: the controller has started anew"),
-            Self::NoAnswer => f.write_str("Disarmed: the controller did not confirm a command"),
+            Self::NoAnswer => f.write_str(
+                "Disarmed: the controller does not answer any more: check its power, its cable and the line",
+            ),
             Self::JobEnded => f.write_str("Disarmed: the job that moved the motors has ended"),
             Self::LinkLost => f.write_str("Disarmed: the link was lost"),
             Self::Closing => f.write_str("Disarmed: the link is being closed"),
