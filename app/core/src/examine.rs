@@ -11,7 +11,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use brushwork_family::examine::{self, Examiner};
-pub use brushwork_family::examine::{Answer, Examination, Need, State, Step};
+pub use brushwork_family::examine::{Answer, Examination, Need, RawWrite, State, Step};
 use brushwork_family::messages::{
     ExamineActMessage, ExamineCauseMessage, ExamineRemedyMessage, LoopActMessage,
 };
@@ -92,6 +92,11 @@ impl Examining {
     #[must_use]
     pub fn is_shut(&self, step: &Step) -> bool {
         self.subject.is_none() && step.need > Need::Guess
+    }
+
+    /// Notes what the unit's owner had written raw.
+    pub fn note_raw_writes(&self, writes: Vec<RawWrite>) {
+        self.found.lock().unwrap_or_else(PoisonError::into_inner).raw_writes = writes;
     }
 
     /// What was found so far.

@@ -30,6 +30,7 @@ messages! {
 messages! {
     /// Why changes are not planned, and what to know of a plan.
     pub enum PlanMessage {
+        NoCommandFor { title: String, reason: &'static str } "{title} cannot be written raw either: no known command carries it. {reason}",
         NoSuchSetting { model: &'static str, generation: FirmwareGeneration, key: String } "The {model} with firmware {generation} has no setting {key}.",
         Locked { title: String, reason: &'static str } "{title} is not written. {reason}",
         NoRoom { titles: String, why: Message } "{titles} cannot be written: {why}.",

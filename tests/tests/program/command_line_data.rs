@@ -385,3 +385,54 @@ fn without_a_display_the_program_names_the_command_line() {
     }
     assert_reported(&run(&["--open", "sim:mcp266", "status"]), USAGE, &["--open"]);
 }
+
+/// As a real controller over a port: what is only guessed is refused there.
+#[test]
+fn a_raw_number_is_written_at_the_owners_word_read_back_undone_and_reported() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let report = folder.path().join("unit.json").display().to_string();
+    // Of generation 4, whose examination takes the least time.
+    let mut sim = start(&["sim", "--tcp", "127.0.0.1:0", "--generation", "4"]);
+    let greeting = sim.wait_for("Connect with", LIMIT);
+    let port = format!("tcp:{},stream=usb", greeting.rsplit("tcp:").next().unwrap_or_default().trim());
+    let settings = |arguments: &[&str]| run(&[&["settings"], arguments, &["-c", &port]].concat());
+    let pin = || json(&settings(&["read", "motor1.encoder.pin", "--json"]))["settings"][0]["value"].clone();
+    let before = pin();
+    assert_ne!(before, 2);
+
+    let refused = settings(&["write", "motor1.encoder.pin=2", "--yes"]);
+    assert_eq!(code(&refused), Some(5), "a guess is no normal write: {refused:?}");
+    let unasked = settings(&["raw", "motor1.encoder.pin=2"]);
+    assert_eq!(code(&unasked), Some(4), "nobody could be asked: {unasked:?}");
+    let shown = settings(&["raw", "motor1.encoder.pin=0x02", "--dry-run"]);
+    assert_eq!(code(&shown), Some(DONE), "{shown:?}");
+    assert!(shown.stdout.join("\n").contains("80 5C 02"), "command 92 and the number: {shown:?}");
+    assert_eq!(pin(), before);
+
+    let written = settings(&["raw", "motor1.encoder.pin=2", "--own-risk"]);
+    assert_eq!(code(&written), Some(DONE), "{written:?}");
+    assert!(written.stderr.join("\n").contains("What this number means is not public"), "{written:?}");
+    assert_eq!(pin(), 2);
+    let undone = settings(&["raw", "--undo", "--own-risk"]);
+    assert_eq!(code(&undone), Some(DONE), "{undone:?}");
+    assert_eq!(pin(), before);
+
+    for (key, words) in [
+        ("can.rate=500000", "no known command carries it"),
+        ("motor1.velocity.z=1", "has no setting motor1.velocity.z"),
+        ("motor1.encoder.pin=256", "cannot be written"),
+    ] {
+        let refused = settings(&["raw", key, "--own-risk"]);
+        assert_eq!(code(&refused), Some(5), "{refused:?}");
+        assert!(refused.stderr.join("\n").contains(words), "{refused:?}");
+    }
+
+    let examined = run(&["examine", "-c", &port, "--json", &report]);
+    assert_eq!(code(&examined), Some(DONE), "{examined:?}");
+    assert!(examined.stdout.join("\n").contains("Written raw, at the owner's word"), "{examined:?}");
+    let found: Value =
+        serde_json::from_str(&std::fs::read_to_string(&report).expect("written")).expect("JSON");
+    let [first, second] = [0, 1].map(|at| found["raw_writes"][at].clone());
+    assert_eq!((&first["command"], &first["wanted"], &first["found"]), (&92.into(), &2.into(), &2.into()));
+    assert_eq!((&second["wanted"], &second["before"]), (&before, &2.into()));
+}

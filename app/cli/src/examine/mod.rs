@@ -36,6 +36,8 @@ pub fn run(args: &ExamineArgs, out: &mut Output, interrupt: &Interrupt) -> Resul
     let client = Client::connect(&args.connect, PollRate::Off, interrupt)?;
     let examining = Examining::begin(&client.identity).map_err(|sentence| Exit::Refused.saying(sentence))?;
     check_steps(args, &examining)?;
+    let unit = UnitId::new(&client.identity, &list_ports().unwrap_or_default());
+    examining.note_raw_writes(Store::of_user().raw_writes(&unit));
     let mut ended = Ok(());
     for step in examining.steps() {
         ended = ended.and_then(|()| take(step, args, &client, &examining, interrupt));

@@ -28,6 +28,8 @@ pub enum SettingsAction {
     Read(ReadArgs),
     /// Show what would change, write it to RAM, read it back and name what did not take.
     Write(WriteArgs),
+    /// Write one number into one register at your own risk, where what it means is not public.
+    Raw(RawArgs),
     /// Compare the controller with a profile, or two profiles.
     Diff(DiffArgs),
     /// Save the controller's RAM settings to its EEPROM.
@@ -179,6 +181,35 @@ pub struct WriteArgs {
     pub how: WriteHow,
 }
 
+/// Arguments of `brushwork settings raw`.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    brushwork settings raw --connect /dev/ttyACM0 motor1.encoder.pin=2\n  \
+    brushwork settings raw --connect /dev/ttyACM0 --undo\n\n\
+    For what the vendor's own program sets and no public text explains: the encoder's pin, the pin type of a digital input. It goes out with the \
+    command that carries the setting, its other fields as they are, and is read back. A backup is kept first, and `brushwork examine` \
+    reports it. Nothing else writes such a number, not an import and not a restore.")]
+pub struct RawArgs {
+    /// The controller.
+    #[command(flatten)]
+    pub connect: ConnectArgs,
+    /// The setting and the number, decimal or 0x.
+    #[arg(value_name = "KEY=NUMBER", required_unless_present = "undo")]
+    pub number: Option<RawNumber>,
+    /// Write the number from before the newest one that was written to this controller.
+    #[arg(long, conflicts_with = "number")]
+    pub undo: bool,
+    /// Write it without asking: you answer for what it does.
+    #[arg(long)]
+    pub own_risk: bool,
+    /// Show the change, the command and its bytes, and write nothing.
+    #[arg(long)]
+    pub dry_run: bool,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
 /// Arguments of `brushwork settings import`.
 #[derive(Debug, Args)]
 pub struct ImportArgs {
@@ -261,6 +292,28 @@ pub struct ReferenceArgs {
     /// Print JSON.
     #[arg(long)]
     pub json: bool,
+}
+
+/// One KEY=NUMBER as it was typed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RawNumber {
+    /// The setting's key.
+    pub key: String,
+    /// What its register is to hold.
+    pub raw: i64,
+}
+
+impl FromStr for RawNumber {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let assignment: Assignment = text.parse()?;
+        let hex = assignment.value.strip_prefix("0x").map(|digits| i64::from_str_radix(digits, 16));
+        match hex.unwrap_or_else(|| assignment.value.parse()) {
+            Ok(raw) => Ok(Self { key: assignment.key, raw }),
+            Err(_) => Err(format!("\"{}\" is no whole number: use for example 2 or 0x02", assignment.value)),
+        }
+    }
 }
 
 /// One KEY=VALUE as it was typed.

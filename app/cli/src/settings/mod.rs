@@ -14,6 +14,7 @@ mod diff;
 mod keys;
 pub(super) mod memory;
 mod profile;
+mod raw;
 mod read;
 mod review;
 mod side_name;
@@ -29,6 +30,7 @@ pub fn run(args: &SettingsArgs, out: &mut Output, interrupt: &Interrupt) -> Resu
         SettingsAction::Read(args) => read::run(args, out, interrupt),
         SettingsAction::Write(args) => write::run(args, out, interrupt),
         SettingsAction::Import(args) => write::import(args, out, interrupt),
+        SettingsAction::Raw(args) => raw::run(args, out, interrupt),
         SettingsAction::Diff(args) => diff::run(args, out, interrupt),
         SettingsAction::Save(args) => memory::save(args, out, interrupt),
         SettingsAction::Defaults(args) => memory::defaults(args, out, interrupt),

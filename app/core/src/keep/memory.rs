@@ -8,9 +8,13 @@ use serde::{Deserialize, Serialize};
 
 use super::store::{KeepError, Store};
 use super::unit::{OWNER, UnitId};
+use crate::examine::RawWrite;
 
 const EEPROM: &str = "eeprom";
 const WEAR: &str = "wear";
+const RAW: &str = "raw";
+/// As many raw writes as are remembered of a unit.
+const MOST_RAW_WRITES: usize = 200;
 
 /// Assumed: writes that each byte of the EEPROM stands. Makers of EEPROMs state 100 000, of flash that stands in for
 /// one 10 000; the controllers' manuals state nothing, so the lower figure counts.
@@ -105,6 +109,24 @@ impl Store {
         let text = serde_json::to_string_pretty(&wear).unwrap_or_default();
         self.put_memory(WEAR, unit, &text)?;
         Ok(wear)
+    }
+
+    /// The numbers that were written to the unit raw from this computer, oldest first. A file that cannot be read counts as none.
+    pub fn raw_writes(&self, unit: &UnitId) -> Vec<RawWrite> {
+        let text = self.memory_path(RAW, unit).ok().and_then(|path| fs::read_to_string(path).ok());
+        text.and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default()
+    }
+
+    /// Notes one more.
+    ///
+    /// # Errors
+    /// It cannot be kept.
+    pub fn note_raw_write(&self, unit: &UnitId, write: RawWrite) -> Result<(), KeepError> {
+        let mut writes = self.raw_writes(unit);
+        writes.push(write);
+        writes.drain(..writes.len().saturating_sub(MOST_RAW_WRITES));
+        let text = serde_json::to_string_pretty(&writes).unwrap_or_default();
+        self.put_memory(RAW, unit, &text)
     }
 
     /// What the unit's EEPROM held when that was proven last, with the date.

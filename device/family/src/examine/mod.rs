@@ -6,7 +6,9 @@ mod report;
 mod text;
 
 pub use question::{Need, Question, Step};
-pub use report::{Answer, CommandFound, Examination, ExaminationError, Line, SCHEMA, State, Unit, VERSION};
+pub use report::{
+    Answer, CommandFound, Examination, ExaminationError, Line, RawWrite, SCHEMA, State, Unit, VERSION,
+};
 
 use brushwork_link::device::JobContext;
 use brushwork_link::{Failure, FamilyRef, Identity};

@@ -37,6 +37,30 @@ pub struct Examination {
     /// What cannot be asked over the wire.
     #[serde(default)]
     pub not_askable: Vec<Unasked>,
+    /// What its owner had written raw, oldest first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub raw_writes: Vec<RawWrite>,
+}
+
+/// A number that was written to a register at its owner's word, since what it means is not public.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RawWrite {
+    /// When.
+    pub date: String,
+    /// The setting's key.
+    pub key: String,
+    /// The command that carries it.
+    pub command: u8,
+    /// The pin, stream or output that the command names.
+    pub index: Option<u8>,
+    /// The field of the command.
+    pub field: String,
+    /// What the register held before.
+    pub before: Option<i64>,
+    /// What was written.
+    pub wanted: i64,
+    /// What was read back.
+    pub found: Option<i64>,
 }
 
 /// Who a unit is.
@@ -193,6 +217,7 @@ impl Examination {
             commands: Vec::new(),
             answers: Vec::new(),
             not_askable: Vec::new(),
+            raw_writes: Vec::new(),
         }
     }
 

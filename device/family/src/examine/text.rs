@@ -1,6 +1,6 @@
 //! An examination for people: what an owner reads before he sends it.
 
-use super::report::{Answer, Examination, State};
+use super::report::{Answer, Examination, RawWrite, State};
 use std::fmt::Write as _;
 
 /// Letters of a line, and how far what belongs to something is indented.
@@ -38,6 +38,19 @@ impl Examination {
             heading(&mut text, "Assumed, and not asked over the wire");
             for row in &self.not_askable {
                 push(&mut text, &format!("- {} {}", row.what, row.why), "  ");
+            }
+        }
+        if !self.raw_writes.is_empty() {
+            heading(&mut text, "Written raw, at the owner's word");
+            let number = |raw: Option<i64>| raw.map_or_else(|| "unknown".to_owned(), |raw| raw.to_string());
+            for write in &self.raw_writes {
+                let RawWrite { date, key, command, field, wanted, .. } = write;
+                let of = write.index.map_or_else(String::new, |index| format!(" of number {index}"));
+                let (before, found) = (number(write.before), number(write.found));
+                let line = format!(
+                    "- {date} {key}: {wanted} in place of {before} by command {command}, {field}{of}; read back {found}"
+                );
+                push(&mut text, &line, "  ");
             }
         }
         if !self.commands.is_empty() {

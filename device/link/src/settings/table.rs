@@ -3,9 +3,10 @@
 use std::collections::HashMap;
 
 use super::image::SettingsImage;
-use super::row::{Group, Row};
+use super::row::{Access, Group, Row};
 use super::subject::Subject;
 use super::value::SettingValue;
+use crate::messages::PlanMessage;
 use brushwork_values::Message;
 
 /// The settings of one controller.
@@ -47,6 +48,24 @@ impl SettingsTable {
     /// What a value means besides its text: the pin behind an encoder input number, as far as we assume it.
     pub fn note(&self, row: &Row, value: SettingValue) -> Option<Message> {
         self.subject.family().settings().note(self, row, value)
+    }
+
+    /// The same table with one row that may be written on a real controller too, whatever is guessed of it: its owner has said so.
+    ///
+    /// # Errors
+    /// A sentence: there is no such row, or no command that writes it.
+    pub fn at_owners_word(mut self, key: &str) -> Result<Self, Message> {
+        let Some(index) = self.by_key.get(key) else {
+            let (model, generation) = (self.subject.model.name, self.subject.generation);
+            return Err(PlanMessage::NoSuchSetting { model, generation, key: key.to_owned() }.into());
+        };
+        let row = &mut self.rows[*index];
+        if row.sink().is_none() {
+            let reason = row.locked(false).unwrap_or_default();
+            return Err(PlanMessage::NoCommandFor { title: row.title(), reason }.into());
+        }
+        row.access = Access::ReadWrite;
+        Ok(self)
     }
 
     /// Every row at its default.

@@ -10,7 +10,10 @@ mod tuning;
 
 use crate::support::bench::Bench;
 use brushwork_gui::model::screen::Screen;
+use brushwork_link::settings::SettingsTable;
 use brushwork_mcp_sim::settings::Settings;
+use brushwork_mcp_wire::models;
+use brushwork_mcp_wire::packet_serial::Generation;
 use egui::accesskit::Role;
 use egui::{Key, Theme};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
@@ -28,14 +31,17 @@ struct Row {
     role: &'static str,
     label: &'static str,
     usage: &'static str,
+    controller: &'static str,
 }
 
 fn rows() -> Vec<Row> {
     let lines = TABLE.lines().filter(|line| line.starts_with("| 1."));
     let row = |line: &'static str| {
         let cells: Vec<&str> = line.trim_matches('|').split(" | ").map(str::trim).collect();
-        let [section, function, place, role, label, usage] = cells[..] else { panic!("six columns: {line}") };
-        Row { section, function, place, role, label, usage }
+        let [section, function, place, role, label, usage, controller] = cells[..] else {
+            panic!("seven columns: {line}")
+        };
+        Row { section, function, place, role, label, usage, controller }
     };
     lines.map(row).collect()
 }
@@ -107,6 +113,41 @@ fn every_section_of_the_manual_is_walked() {
     for section in (2..=12).map(|section| format!("1.9.{section}")) {
         assert!(sections.contains(&section.as_str()), "{section}");
     }
+}
+
+/// On which controllers a setting can be written, by its title: as the table of settings says of each generation.
+fn controllers(title: &str) -> Option<String> {
+    brushwork_link::install(&[&brushwork_mcp_client::McpDriver]);
+    let model = models::lookup("mcp266").expect("it is listed");
+    let is_writable = |generation: Generation| {
+        let table = SettingsTable::new(brushwork_mcp_client::subject(model, generation));
+        let row = table.rows().iter().find(|row| row.title() == title);
+        row.map(|row| (generation.number(), row.locked(false).is_none()))
+    };
+    let generations: Vec<(u8, bool)> = Generation::ALL.into_iter().filter_map(is_writable).collect();
+    let first = generations.iter().find(|(_, is_writable)| *is_writable);
+    match first {
+        _ if generations.is_empty() => None,
+        None => Some("simulated only".to_owned()),
+        Some(_) if generations.iter().all(|(_, is_writable)| *is_writable) => Some("real".to_owned()),
+        Some((first, _)) => Some(format!("real from generation {first}")),
+    }
+}
+
+#[test]
+fn the_table_says_of_each_function_on_which_controllers_it_works() {
+    let mut judged = 0;
+    for row in rows() {
+        let wanted = match (row.function, row.usage) {
+            ("Digital input", _) => controllers("DIN4/AN4/P4: digital input"),
+            // The compiler's images are for simulated controllers (`device/mcp/client/src/script`).
+            (_, "do mcl_download") => Some("simulated only".to_owned()),
+            _ => controllers(row.label),
+        };
+        judged += usize::from(wanted.is_some());
+        assert_eq!(row.controller, wanted.as_deref().unwrap_or("real"), "{row:?}");
+    }
+    assert!(judged > 50, "{judged} rows are settings of the table");
 }
 
 // ----- places
