@@ -1,5 +1,6 @@
 //! A controller as a command sees it: connected and identified, or a sentence and an exit code.
 
+use crate::messages::CliLinkMessage;
 use std::fmt::Display;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -116,10 +117,7 @@ pub fn line_target(args: &LineArgs) -> Result<ConnectTarget, Exit> {
     let one_family =
         families().iter().any(|family| args.address.iter().all(|address| family.has_address(*address)));
     if !on_can && !one_family {
-        return Err(Exit::Usage.saying(format!(
-            "Could not understand --address: a line has controllers of one family: {}.",
-            addresses_text()
-        )));
+        return Err(Exit::Usage.saying(CliLinkMessage::OneFamily { addresses: addresses_text() }));
     }
     Ok(at_addresses(target, &args.address))
 }
@@ -127,7 +125,7 @@ pub fn line_target(args: &LineArgs) -> Result<ConnectTarget, Exit> {
 fn parse(target: &str) -> Result<ConnectTarget, Exit> {
     target
         .parse()
-        .map_err(|error| Exit::Usage.saying(format!("Could not understand --connect {target}: {error}.")))
+        .map_err(|error| Exit::Usage.saying(CliLinkMessage::NoTarget { target: target.to_string(), error }))
 }
 
 /// The family that is meant: as the target or `--family` says.
@@ -201,10 +199,7 @@ fn wait_for_identity(
             _ => {}
         }
     }
-    Err(Exit::NoLink.saying(format!(
-        "Could not connect: no controller identified itself within {} s.",
-        CONNECT_LIMIT.as_secs()
-    )))
+    Err(Exit::NoLink.saying(CliLinkMessage::NoneIdentified { seconds: CONNECT_LIMIT.as_secs() }))
 }
 
 /// The next event, or `None` when there was none for a moment.
@@ -230,7 +225,7 @@ pub fn look_for_event(
         Ok(Event::Lost(failure)) => Ok(Err(failure)),
         Ok(event) => Ok(Ok(Some(event))),
         Err(RecvTimeoutError::Timeout) => Ok(Ok(None)),
-        Err(RecvTimeoutError::Disconnected) => Err(Exit::NoLink.saying("The link was closed.")),
+        Err(RecvTimeoutError::Disconnected) => Err(Exit::NoLink.saying(CliLinkMessage::Closed)),
     }
 }
 
@@ -251,7 +246,7 @@ pub fn start<T: Send + 'static>(device: &DeviceHandle, job: Job<T>) -> Result<Jo
 }
 
 fn not_asked(refused: impl Display) -> Exit {
-    Exit::Refused.saying(format!("Could not ask the controller: {refused}"))
+    Exit::Refused.saying(CliLinkMessage::NotAsked { refused: refused.to_string() })
 }
 
 /// Arms, and says what the device thread warns of.
@@ -299,5 +294,5 @@ pub fn wait<T>(
             None => {}
         }
     }
-    Err(Exit::NoLink.saying(format!("The controller did not answer within {} s.", ANSWER_LIMIT.as_secs())))
+    Err(Exit::NoLink.saying(CliLinkMessage::NoAnswerWithin { seconds: ANSWER_LIMIT.as_secs() }))
 }

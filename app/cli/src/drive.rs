@@ -2,6 +2,8 @@
 //!
 //! The device thread's dead-man is renewed by this loop alone, so that a hung terminal stops the motors too.
 
+use crate::messages::CliLinkMessage;
+use brushwork_core::messages::CoreStatusMessage;
 use brushwork_link::messages::ActMessage;
 use std::time::{Duration, Instant};
 
@@ -30,11 +32,11 @@ pub fn run(args: &DriveArgs, out: &mut Output, interrupt: &Interrupt) -> Result<
         _ => Drive::both(command),
     };
     if let Some(clause) = client.identity.objection(&drive) {
-        return Err(Exit::Refused.saying(format!(
-            "Could not move the motor of {} on {}: {clause}.",
-            client.identity.place(),
-            client.identity.port
-        )));
+        return Err(Exit::Refused.saying(CliLinkMessage::NotMoved {
+            unit: client.identity.place(),
+            port: client.identity.port.clone(),
+            clause: clause.to_string(),
+        }));
     }
     arm(client.device(), ArmScope::CommandLine, interrupt)?;
     let driven = keep_driving(args, drive, &client, out, interrupt);
@@ -147,7 +149,7 @@ fn keep_driving(
 
 #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 fn disarmed(reason: &DisarmReason) -> Exit {
-    say(format!("{reason}. The motors are being stopped."));
+    say(CoreStatusMessage::Stopping { reason: reason.clone() });
     match reason {
         DisarmReason::LinkLost => Exit::NoLink,
         _ => Exit::Refused,

@@ -33,6 +33,7 @@ mod stop;
 mod tool;
 pub mod tune;
 
+use crate::messages::CliLinkMessage;
 use std::process::ExitCode;
 
 use clap::{ArgMatches, CommandFactory as _, FromArgMatches as _};
@@ -78,9 +79,7 @@ pub fn run(
 fn with_interrupt(run: impl FnOnce(&mut Output, &Interrupt) -> Result<Exit, Exit>) -> ExitCode {
     match Interrupt::install() {
         Ok(interrupt) => run(&mut Output::stdout(), &interrupt).unwrap_or_else(|exit| exit),
-        Err(error) => Exit::Failed.saying(format!(
-            "Could not take over Ctrl-C, without which motors could not be stopped: {error}."
-        )),
+        Err(error) => Exit::Failed.saying(CliLinkMessage::NoCtrlC { error: error.to_string() }),
     }
     .into()
 }

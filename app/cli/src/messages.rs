@@ -1,11 +1,42 @@
 //! What the command line says beside what its data says, in its words.
 
+use brushwork_link::transport::TargetError;
+use brushwork_link::{Failure, FirmwareGeneration, Message};
 use brushwork_values::messages;
 
 messages! {
-    /// What to know before settings are written.
+    /// What is said of settings, their copies and their backups.
     pub enum CliSettingsMessage {
         StreamUnknown "It is not known which of the controller's streams this port is wired to; if it is one that changes, the link may be lost. A target such as /dev/ttyUSB0,stream=ttl1 says it.",
+        NobodyToAsk { question: String } "{question} Nobody can be asked here: give --yes to do it. Nothing was written.",
+        StoppedAsking "\nNothing was written.",
+        NotWritten "Nothing was written.",
+        NotAsked { error: String } "Could not ask: {error}. Nothing was written.",
+        NoBackupOfThis "There is no backup of this controller yet. `brushwork settings backups` lists those of others.",
+        NoBackup "There is no backup of this controller yet.",
+        BackupIs { name: String, unit: String } "Backup {name} ({unit}).",
+        NoSuchBackup { name: String } "There is no backup {name}. `brushwork settings backups` lists them.",
+        SeveralBackups { name: String } "More than one backup begins with {name}. `brushwork settings backups` lists them.",
+        ComparedAs { right: String, left: String } "{right} is compared as it would be on the controller of {left}:",
+        UnknownModel { unit: String, port: String, version: String } "The unit at {unit} on {port} calls itself \"{version}\", which is no model that this program knows: its settings are not known.",
+        NotRead { keys: String, failure: Failure } "Not read: {keys}. {failure}",
+        Listed { sentence: String } "  {sentence}",
+        AndMore { count: usize } "  ... and {count} more.",
+        SeeUnfinished "`brushwork settings unfinished` shows all of it and settles it with --finish, --undo or --forget.",
+        OneOrTwo "One or two profiles can be compared.",
+        OnOneSide { keys: String } "Not compared, since only one side has them: {keys}",
+        OtherKind { left: String, one: String, right: String, other: String } "Note: {left} is of {one}, {right} of {other}.",
+        NotSaved { failure: Failure } "Nothing was saved. {failure}",
+        EepromLost "What EEPROM holds is not known. What was written and not saved is lost.",
+        Note { note: String } "Note: {note}",
+        Wear { wear: String, limits: &'static str } "Note: {wear} {limits}",
+        NotInProfile "What could not be read is not in the profile.",
+        Warning { conflict: String } "Warning: {conflict}",
+        Fitted "The profile has to be changed to fit this controller:",
+        NotFitting { unit: String, error: String } "The profile does not fit {unit}, nothing was changed:\n{error}",
+        NothingWritten "Nothing was written:",
+        NotSavedEither "The settings were not saved to EEPROM, since not all of them took.",
+        EndedEarly { failure: String } "Writing ended early. {failure}",
     }
 }
 
@@ -15,5 +46,118 @@ messages! {
         WriteSettings "write the settings",
         SaveSettings "save the settings",
         RestoreDefaults "restore the defaults",
+    }
+}
+
+messages! {
+    /// What is said of the link and of moving motors.
+    pub enum CliLinkMessage {
+        OneFamily { addresses: String } "Could not understand --address: a line has controllers of one family: {addresses}.",
+        NoTarget { target: String, error: TargetError } "Could not understand --connect {target}: {error}.",
+        NoneIdentified { seconds: u64 } "Could not connect: no controller identified itself within {seconds} s.",
+        Closed "The link was closed.",
+        NotAsked { refused: String } "Could not ask the controller: {refused}",
+        NoAnswerWithin { seconds: u64 } "The controller did not answer within {seconds} s.",
+        NotMoved { unit: String, port: String, clause: String } "Could not move the motor of {unit} on {port}: {clause}.",
+        NoAnswer "The link gave no answer.",
+        NotConfirmedByAll "The stop was written to all of them, but nobody confirmed it. If a motor runs, cut its power.",
+        NotConfirmed { seconds: u64 } "Stop was sent, but the controller did not confirm it within {seconds} s. Cut the motor power.",
+        NoCtrlC { error: String } "Could not take over Ctrl-C, without which motors could not be stopped: {error}.",
+        NoQpps "The motor's QPPS is 0, so a position move would not move. Give --speed-limit or set QPPS first.",
+        OtherFamily { title: String, family: &'static str } "{title} is no {family}; its commands are put together in the window's Traffic screen.",
+        TerminalOf { title: String, unit: String, port: String, mode: String, protocol: String } "{title} {unit} on {port}: {mode}, {protocol}.",
+        TerminalStops "Note: the motor is stopped for this, and what it changes in EEPROM stays.",
+    }
+}
+
+messages! {
+    /// What became of work on the controller.
+    pub enum CliJobMessage {
+        NoStep { named: String, steps: String } "There is no step \"{named}\" to agree to. The steps are {steps}.",
+        StepPutBack "What the step had changed is as it was before, as reading it has shown.",
+        NotToTheEnd { act: Message, cause: String } "Could not {act} to the end: {cause}.",
+        Internal { act: Message, word: String } "Could not {act}: an internal error ({word}). Please report it.",
+        NotInTime { act: Message } "Could not {act}: it did not end in its time.",
+        WorkNotInTime { act: Message } "Could not {act}: the work did not end in time.",
+        NotBegun { act: Message, refused: String } "Could not {act}: {refused}",
+    }
+}
+
+messages! {
+    /// What is said of models and of firmware.
+    pub enum CliFirmwareMessage {
+        NoModel { name: String } "\"{name}\" is no model. `brushwork sim --list` names them.",
+        NoCanPort { model: &'static str } "A {model} has no CAN port, so that there is no data sheet of it as a node.",
+        NoImage { error: String } "Could not make the image: {error}.",
+        NotSentFor { why: String } "{why} Nothing was sent.",
+        FileNotSent { file: String, why: String } "{file} is not sent: {why}.",
+        ReadThis "Before you update, read this:",
+        Risk { risk: String } "  - {risk}",
+        AcceptRisk "Nobody can be asked here: give --accept-risk to update all the same. Nothing was sent.",
+        NotSent "Nothing was sent.",
+        NotEntered { refused: String } "Could not enter the firmware loader: {refused}",
+        LoaderLate "Could not enter the firmware loader: the controller did not get there in time. Nothing was erased.",
+        Because { why: String } "{why}.",
+        GoesOn "\nThe update cannot be stopped now: the controller would be left without firmware. It goes on.",
+        Failed { failure: Failure } "\n{failure}",
+        InternalError "Could not send the firmware: an internal error. Please report it.",
+        Waiting "Waiting for the controller to come back.",
+        NotBack { why: String } "The controller did not come back, so that nobody knows whether the update is good: {why}",
+    }
+}
+
+messages! {
+    /// What is said of scripts.
+    pub enum CliScriptMessage {
+        OneOutput "--output names one image, but several scripts are given. Leave it out, or build one at a time.",
+        NoName "A script on standard input has no name: say with --output where the image goes.",
+        NotRead { file: String, error: String } "Could not read {file}: {error}.",
+        Faulted { file: String, line: u32, what: String } "{file}:{line}: the script was stopped by a fault: {what}.",
+        Ran { how: String, seconds: f64, instructions: u64 } "{how}; {seconds:.3} s of controller time, {instructions} instructions",
+        NotUsed { file: String, error: String } "Could not use {file}: {error}.",
+        Stopping { reason: String } "{reason}. The script and both motors are being stopped.",
+        AutorunInRam "It is in the controller's RAM; `brushwork settings save` saves it with the other settings.",
+    }
+}
+
+messages! {
+    /// What is said of simulated controllers.
+    pub enum CliSimMessage {
+        UsbHasNoBaud "A USB port has no baud rate: give --baud with --port rs232, ttl1, ttl2 or ttl3.",
+        NotStarted { why: String } "Could not start the simulated controller: {why}.",
+        NotDone { line: String, error: String } "Could not do \"{line}\": {error}.",
+        NoAddress { address: String } "\"{address}\" is no address to listen on. Use for example --tcp 127.0.0.1:7000.",
+        NoFault { text: String, error: String, syntax: &'static str } "Could not read --fault {text}: {error}.\n\n{syntax}",
+        CtrlCEnds "Ctrl-C ends it.",
+        Ended "The simulated controller has ended by itself.",
+    }
+}
+
+messages! {
+    /// What is said of traffic that is watched.
+    pub enum CliMonitorMessage {
+        NotDecoded { name: String, sentence: String } "Could not decode {name}: {sentence}.",
+        Watches { title: String, unit: String, port: String, generation: FirmwareGeneration } "{title} at {unit} on {port} ({generation})",
+        Between { place: String, name: String } "Between {place} and {name}: let the other program open {place}. Ctrl-C ends it.",
+        LinkLost { name: String, lost: String } "Lost the link to {name}: {lost}. Check the cable and start the monitor again.",
+        NotBetween { what: String } "Could not stand between another program and the controller: {what}.",
+        LeftOut { count: u64 } "{count} lines were left out: they came too fast.",
+        ClientLeft "The other program closed the port.",
+    }
+}
+
+messages! {
+    /// What is said of tuning.
+    pub enum CliTuneMessage {
+        ReportNotWritten { why: String } "Could not write the report: {why}.",
+        Ended { cause: String } "The run was ended: {cause}. The motors were stopped.",
+        Internal { word: String } "Internal error while tuning: {word}. The motors were stopped.",
+        NotTuned { why: String } "The motor was not tuned: {why}.",
+        NotPutBack "What the tuning changed could not be put back: `brushwork settings unfinished` tells what is left.",
+        PutBack "The old gains and settings are in force again, as reading them back has shown.",
+        NotInTime "The run did not end in its time.",
+        OtherRecord { file: String, entry: usize, of: usize } "The record in {file} does not belong to this version of the tuner, or was changed: at its entry {entry} of {of} the tuner asks for another step. Tune again.",
+        SameResult "The replay gives the same result to the last bit.",
+        OtherResult { file: String, parts: String } "The replay gives another result than {file} holds: it differs in {parts}. The report was changed, or was made on another kind of computer.",
     }
 }

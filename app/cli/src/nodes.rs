@@ -1,5 +1,6 @@
 //! `brushwork nodes`: who is on a CANopen bus, and starting a node that stands.
 
+use crate::messages::CliLinkMessage;
 use brushwork_canopen::NodeId;
 use brushwork_canopen::bus::Who;
 use brushwork_link::ConnectTarget;
@@ -11,7 +12,7 @@ use brushwork_core::session::bus::{self, BusList, Started};
 /// Starts a node if that is asked for, then searches and prints.
 pub fn run(args: &NodesArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let target: ConnectTarget = args.connect.parse().map_err(|error| {
-        Exit::Usage.saying(format!("Could not understand --connect {}: {error}.", args.connect))
+        Exit::Usage.saying(CliLinkMessage::NoTarget { target: args.connect.clone(), error })
     })?;
     if let Some(node) = args.start {
         let node = NodeId::new(node).ok_or(Exit::Usage)?;

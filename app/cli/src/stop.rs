@@ -2,6 +2,7 @@
 //!
 //! The stop goes out before anybody is looked for, to whoever may be there; then the units are found and each is asked to confirm.
 
+use crate::messages::CliLinkMessage;
 use std::time::{Duration, Instant};
 
 use brushwork_link::device::{Addresses, DeviceHandle, Event, Identity, PollRate, StopReport, UnitStop};
@@ -75,7 +76,7 @@ fn stop_line(line: &LineArgs, interrupt: &Interrupt) -> Result<LineStop, Exit> {
     let (units, first) = found.map_err(|sentence| {
         say(sentence);
         if !on_can {
-            say("The stop was written to all of them, but nobody confirmed it. If a motor runs, cut its power.");
+            say(CliLinkMessage::NotConfirmedByAll);
         }
         client::with_loader(Exit::NoLink, &line.connect)
     })?;
@@ -121,10 +122,7 @@ fn wait_for_report(device: &DeviceHandle) -> Result<StopReport, Exit> {
             return Ok(report);
         }
     }
-    Err(Exit::Refused.saying(format!(
-        "Stop was sent, but the controller did not confirm it within {} s. Cut the motor power.",
-        STOP_LIMIT.as_secs()
-    )))
+    Err(Exit::Refused.saying(CliLinkMessage::NotConfirmed { seconds: STOP_LIMIT.as_secs() }))
 }
 
 /// Stops what a command has set in motion, and says what is not plainly stopped. A signal does not cut this short.

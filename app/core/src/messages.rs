@@ -2,6 +2,7 @@
 
 use brushwork_canopen::NodeId;
 use brushwork_link::Message;
+use brushwork_link::device::DisarmReason;
 use brushwork_values::{Motor, messages};
 
 messages! {
@@ -77,5 +78,12 @@ messages! {
     /// What is said after a tuning run.
     pub enum TuneMessage {
         LeftOff "The controller's loop did not hold the motor still with the old gains, so its output is left switched off (DISABLEPID in FUNCTION, in RAM): the motor stands, but nothing holds it. The next Arm or `drive` switches the loop on again, and so does a reset of the unit.",
+    }
+}
+
+messages! {
+    /// What is said of what happens on a link.
+    pub enum CoreStatusMessage {
+        Stopping { reason: DisarmReason } "{reason}. The motors are being stopped.",
     }
 }

@@ -3,6 +3,7 @@
 //! [`App::contents`] draws one frame and is all that eframe, the tests and the benchmarks need. It takes its time from
 //! the link's own clock and its links from outside ([`Parts`]), and never waits for a byte.
 
+use crate::messages::WindowStatusMessage;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -223,7 +224,7 @@ impl App {
                 Ok(event) => self.take(connection, event),
                 Err(TryRecvError::Empty) => break,
                 Err(TryRecvError::Disconnected) => {
-                    self.say(connection, Gravity::Error, "The link ended without a reason. Connect again.");
+                    self.say(connection, Gravity::Error, WindowStatusMessage::LinkEnded);
                     self.ended(connection);
                 }
             }
@@ -261,8 +262,8 @@ impl App {
     }
 
     /// Says something about a link; one in the background is named.
-    fn say(&mut self, id: ConnectionId, gravity: Gravity, text: impl Into<String>) {
-        let text = text.into();
+    fn say(&mut self, id: ConnectionId, gravity: Gravity, text: impl std::fmt::Display) {
+        let text = text.to_string();
         let behind = self.model.others.iter().find(|connection| connection.id() == id);
         let text = match behind.and_then(|connection| connection.phase.target()) {
             Some(target) => format!("{target}: {text}"),

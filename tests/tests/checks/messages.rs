@@ -107,3 +107,36 @@ fn what_people_read_is_no_bare_text() {
     }
     assert_eq!(bare, Vec::<String>::new());
 }
+
+/// How the command line and the window's message line say something, each without white space. What follows may be no text.
+const SAYING: [&str; 6] =
+    ["say(", "saying(", "messages.note(", "messages.warn(", "messages.fail(", "Effect::Say("];
+
+#[test]
+fn what_is_said_is_no_bare_text() {
+    let mut bare = Vec::new();
+    let mut said = 0;
+    let is_face = |path: &String| path.starts_with("app/cli/src/") || path.starts_with("app/gui/src/");
+    for path in workspace::rust_files().into_iter().filter(is_face) {
+        let source = workspace::read(&path);
+        let shipped = source.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
+        let dense: String = shipped.chars().filter(|letter| !letter.is_whitespace()).collect();
+        for saying in SAYING {
+            for (at, _) in dense.match_indices(saying) {
+                let rest = &dense[at + saying.len()..];
+                // The line may have its gravity, or whose it is, before its words.
+                let is_name = |letter: char| letter.is_alphanumeric() || "_:.".contains(letter);
+                let mut words = rest;
+                while let Some(after) = words.trim_start_matches(is_name).strip_prefix(',') {
+                    words = after;
+                }
+                said += 1;
+                if words.starts_with('"') || words.starts_with("format!(") {
+                    bare.push(format!("{path}: {saying}{}", rest.chars().take(60).collect::<String>()));
+                }
+            }
+        }
+    }
+    assert!(said > 150, "{said}: what says something is not found any more");
+    assert_eq!(bare, Vec::<String>::new());
+}

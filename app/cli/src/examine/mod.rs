@@ -2,6 +2,7 @@
 
 mod args;
 
+use crate::messages::CliJobMessage;
 use std::io::{self, IsTerminal as _, Write as _};
 use std::time::{Duration, Instant};
 
@@ -60,8 +61,10 @@ fn check_steps(args: &ExamineArgs, examining: &Examining) -> Result<(), Exit> {
         examining.steps().iter().filter(|step| step.need > Need::Read).map(|step| step.key).collect();
     match args.yes.iter().find(|named| !keys.contains(&named.as_str())) {
         None => Ok(()),
-        Some(named) => Err(Exit::Usage
-            .saying(format!("There is no step \"{named}\" to agree to. The steps are {}.", keys.join(", ")))),
+        Some(named) => {
+            Err(Exit::Usage
+                .saying(CliJobMessage::NoStep { named: named.to_string(), steps: keys.join(", ") }))
+        }
     }
 }
 
@@ -95,7 +98,7 @@ fn take(
     let back = taking.put_back().map_or(Ok(()), |job| {
         let back = finish(client, job, &Interrupt::default()).map(drop);
         if back.is_ok() && step.need != Need::Save {
-            say("What the step had changed is as it was before, as reading it has shown.");
+            say(CliJobMessage::StepPutBack);
         }
         back
     });
@@ -151,18 +154,16 @@ fn finish<T: Send + 'static>(client: &Client, job: Job<T>, interrupt: &Interrupt
                 return match ticket.ending(report.ending) {
                     JobEnding::Done(value) => Ok(value),
                     JobEnding::Interrupted(cause) => {
-                        say(format!("Could not {} to the end: {cause}.", report.name));
+                        say(CliJobMessage::NotToTheEnd { act: report.name, cause: cause.to_string() });
                         Err(exit_of_interruption(cause, stopped))
                     }
                     JobEnding::Failed(failure) => Err(Exit::Refused.saying(failure)),
-                    JobEnding::Panicked(word) => Err(Exit::Failed.saying(format!(
-                        "Could not {}: an internal error ({word}). Please report it.",
-                        report.name
-                    ))),
+                    JobEnding::Panicked(word) => Err(Exit::Failed
+                        .saying(CliJobMessage::Internal { act: report.name, word: word.to_string() })),
                 };
             }
             _ => {}
         }
     }
-    Err(Exit::NoLink.saying(format!("Could not {}: it did not end in its time.", ticket.name())))
+    Err(Exit::NoLink.saying(CliJobMessage::NotInTime { act: ticket.name().clone() }))
 }

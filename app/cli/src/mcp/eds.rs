@@ -1,5 +1,6 @@
 //! `brushwork eds`: the electronic data sheet of a controller as a node of a CANopen bus.
 
+use crate::messages::CliFirmwareMessage;
 use std::path::PathBuf;
 
 use brushwork_mcp_wire::canopen::data_sheet;
@@ -32,16 +33,11 @@ pub struct EdsArgs {
 
 /// Makes it.
 pub fn run(args: &EdsArgs, out: &mut Output, _: &Interrupt) -> Result<Exit, Exit> {
-    let model = models::lookup(&args.model).ok_or_else(|| {
-        Exit::Usage.saying(format!("\"{}\" is no model. `brushwork sim --list` names them.", args.model))
-    })?;
+    let model = models::lookup(&args.model)
+        .ok_or_else(|| Exit::Usage.saying(CliFirmwareMessage::NoModel { name: args.model.to_string() }))?;
     let generation = Generation::from_number(args.generation).unwrap_or(Generation::Gen1);
-    let sheet = data_sheet(model, generation).ok_or_else(|| {
-        Exit::Usage.saying(format!(
-            "A {} has no CAN port, so that there is no data sheet of it as a node.",
-            model.name
-        ))
-    })?;
+    let sheet = data_sheet(model, generation)
+        .ok_or_else(|| Exit::Usage.saying(CliFirmwareMessage::NoCanPort { model: model.name }))?;
     match &args.output {
         Some(path) => {
             NewFile::new(path, args.replace).write(sheet.as_bytes())?;

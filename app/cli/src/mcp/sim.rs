@@ -1,5 +1,6 @@
 //! `brushwork sim --model mcp266`: simulated units of packet serial, and what their scripts find around them.
 
+use crate::messages::CliSimMessage;
 use brushwork_core::session::line::SimulatedLine;
 use brushwork_mcp::sim_spec::SimOptions;
 use brushwork_mcp::{self as simulation, SimSpec};
@@ -31,11 +32,10 @@ pub fn simulate(sim: &ArgMatches) -> Result<Simulated, Exit> {
         rate_bps: args.baud,
     };
     if args.baud.is_some() && args.port == StreamArg::Usb {
-        return Err(Exit::Usage
-            .saying("A USB port has no baud rate: give --baud with --port rs232, ttl1, ttl2 or ttl3."));
+        return Err(Exit::Usage.saying(CliSimMessage::UsbHasNoBaud));
     }
     let spec = SimSpec::from_options(&options)
-        .map_err(|error| Exit::Usage.saying(format!("Could not start the simulated controller: {error}.")))?;
+        .map_err(|error| Exit::Usage.saying(CliSimMessage::NotStarted { why: error.to_string() }))?;
     let stream = args.port.index();
     let mut bus = simulation::bus_of(&spec, stream).map_err(|error| Exit::Usage.saying(error.to_string()))?;
     prepare(args, &mut bus)?;

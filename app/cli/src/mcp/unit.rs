@@ -1,5 +1,6 @@
 //! What shared commands ask of an MCP or RoboClaw: where its inputs stand, why its motors do not run, how fast they are.
 
+use crate::messages::CliLinkMessage;
 use brushwork_link::{DeviceHandle, Event, Identity, Request, Wire};
 use brushwork_mcp_client::TypedWire as _;
 use brushwork_mcp_client::diagnosis::{Evidence, Measured, PinEnd, diagnose, homed};
@@ -61,9 +62,7 @@ pub fn qpps(motors: &[Motor], device: &DeviceHandle, interrupt: &Interrupt) -> R
         slowest = slowest.min(u32::try_from(reply.int(name::QPPS)).unwrap_or(0));
     }
     if slowest == 0 {
-        return Err(Exit::Refused.saying(
-            "The motor's QPPS is 0, so a position move would not move. Give --speed-limit or set QPPS first.",
-        ));
+        return Err(Exit::Refused.saying(CliLinkMessage::NoQpps));
     }
     Ok(slowest)
 }

@@ -3,6 +3,7 @@
 //! The end of a line is a pause, unless a packet that may still become whole is open there; an empty line always is one. So
 //! both one packet a line and the lines of a hex dump are understood.
 
+use crate::messages::CliMonitorMessage;
 use std::io::Read;
 use std::path::Path;
 use std::time::Duration;
@@ -16,7 +17,9 @@ use crate::{Exit, Output};
 /// Prints what the requests in the file mean.
 pub fn run(args: &MonitorArgs, path: &Path, out: &mut Output) -> Result<(), Exit> {
     let name = if is_standard_input(path) { "standard input".into() } else { path.display().to_string() };
-    let failed = |sentence: String| Exit::Failed.saying(format!("Could not decode {name}: {sentence}."));
+    let failed = |sentence: String| {
+        Exit::Failed.saying(CliMonitorMessage::NotDecoded { name: name.to_string(), sentence })
+    };
     let text = read(path).map_err(|error| failed(error.to_string()))?;
     let lines = parse(&text).map_err(|error| failed(error.to_string()))?;
     let mut decoder = follower(args)?;

@@ -1,5 +1,6 @@
 //! Monitoring this program's own traffic: its polling, from the moment the controller is found.
 
+use crate::messages::CliMonitorMessage;
 use std::time::Instant;
 
 use brushwork_link::device::{Event, PollRate, Request};
@@ -23,13 +24,12 @@ pub fn run(args: &MonitorArgs, out: &mut Output, interrupt: &Interrupt) -> Resul
                     if traffic.sent { Direction::ToController } else { Direction::FromController };
                 print(args.json, &Record { at: Some(at), direction, bytes: traffic.bytes, text }, out)?;
             }
-            Some(Event::Connected(identity)) => say(format!(
-                "{} at {} on {} ({})",
-                identity.title(),
-                identity.place(),
-                identity.port,
-                identity.generation
-            )),
+            Some(Event::Connected(identity)) => say(CliMonitorMessage::Watches {
+                title: identity.title().to_owned(),
+                unit: identity.place(),
+                port: identity.port.clone(),
+                generation: identity.generation,
+            }),
             Some(Event::Failure(failure)) => say(failure.to_string()),
             _ => {}
         }

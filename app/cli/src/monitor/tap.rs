@@ -4,6 +4,7 @@
 //! duplex: while a reply is due that thread waits at the controller, else at the client, and looks at the other side at least
 //! once a millisecond. When the tap ends while the client has motors running, it stops them: nobody else can any more.
 
+use crate::messages::CliMonitorMessage;
 use std::net::SocketAddr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -63,22 +64,21 @@ pub fn run(args: &MonitorArgs, out: &mut Output, interrupt: &Interrupt) -> Resul
         .name("tap".to_owned())
         .spawn(move || tap.run())
         .map_err(|error| failed(&format!("the system gave no thread for it: {error}")))?;
-    say(format!("Between {place} and {name}: let the other program open {place}. Ctrl-C ends it."));
+    say(CliMonitorMessage::Between { place: place.to_string(), name: name.to_string() });
     let printed = show(args, &received, out, interrupt);
     stop.store(true, Ordering::SeqCst);
     let carried = carrier.join();
     drop(simulation);
     match (printed, carried) {
         (_, Err(_)) => Err(failed("the thread that carries the bytes failed")),
-        (Ok(()), Ok(Err(lost))) => Err(Exit::NoLink.saying(format!(
-            "Lost the link to {name}: {lost}. Check the cable and start the monitor again."
-        ))),
+        (Ok(()), Ok(Err(lost))) => Err(Exit::NoLink
+            .saying(CliMonitorMessage::LinkLost { name: name.to_string(), lost: lost.to_string() })),
         (printed, Ok(_)) => printed,
     }
 }
 
 fn failed(what: &str) -> Exit {
-    Exit::Failed.saying(format!("Could not stand between another program and the controller: {what}."))
+    Exit::Failed.saying(CliMonitorMessage::NotBetween { what: what.to_string() })
 }
 
 fn endpoint(args: &MonitorArgs) -> Result<Endpoint, Exit> {
@@ -107,8 +107,8 @@ fn show(
         }
         match received.recv_timeout(WATCH) {
             Ok(News::Record(record)) => print(args.json, &record, out)?,
-            Ok(News::LeftOut(count)) => say(format!("{count} lines were left out: they came too fast.")),
-            Ok(News::ClientLeft) => say("The other program closed the port."),
+            Ok(News::LeftOut(count)) => say(CliMonitorMessage::LeftOut { count }),
+            Ok(News::ClientLeft) => say(CliMonitorMessage::ClientLeft),
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => break,
         }

@@ -3,6 +3,7 @@
 //! A unit in text takes lines; one in binary takes frames in hexadecimal, whose checksum is added. Nothing that moves the motor
 //! goes out: that takes arming, which a terminal does not do.
 
+use crate::messages::CliLinkMessage;
 use std::time::{Duration, Instant};
 
 use brushwork_link::device::{Event, PollRate, Request};
@@ -43,19 +44,18 @@ pub struct TerminalArgs {
 pub fn run(args: &TerminalArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let client = Client::connect(&args.connect, PollRate::Off, interrupt)?;
     let Some(facts) = MotionMindFacts::of(&client.identity) else {
-        return Err(Exit::Refused.saying(format!(
-            "{} is no Motion Mind; its commands are put together in the window's Traffic screen.",
-            client.identity.title()
-        )));
+        return Err(Exit::Refused.saying(CliLinkMessage::OtherFamily {
+            title: client.identity.title().to_owned(),
+            family: "Motion Mind",
+        }));
     };
-    say(format!(
-        "{} {} on {}: {}, {}.",
-        client.identity.title(),
-        client.identity.place(),
-        client.identity.port,
-        facts.mode,
-        facts.protocol
-    ));
+    say(CliLinkMessage::TerminalOf {
+        title: client.identity.title().to_owned(),
+        unit: client.identity.place(),
+        port: client.identity.port.clone(),
+        mode: facts.mode.to_string(),
+        protocol: facts.protocol.to_string(),
+    });
     let lines: Box<dyn Iterator<Item = String>> = match args.commands.is_empty() {
         true => Box::new(std::io::stdin().lines().map_while(Result::ok)),
         false => Box::new(args.commands.iter().cloned()),
@@ -88,7 +88,7 @@ fn exchange(
         }
     };
     if stops_the_motor(&bytes, facts.protocol) {
-        say("Note: the motor is stopped for this, and what it changes in EEPROM stays.");
+        say(CliLinkMessage::TerminalStops);
     }
     ask(client.device(), Request::Raw { id, bytes: bytes.clone() })?;
     let deadline = Instant::now() + REPLY_LIMIT;
@@ -107,7 +107,7 @@ fn exchange(
             _ => {}
         }
     }
-    Err(Exit::NoLink.saying("The link gave no answer."))
+    Err(Exit::NoLink.saying(CliLinkMessage::NoAnswer))
 }
 
 /// Whether the bytes are a command that writes EEPROM or starts the unit anew.

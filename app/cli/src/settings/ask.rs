@@ -1,5 +1,6 @@
 //! Asking before something is written, without losing sight of Ctrl-C and the link meanwhile.
 
+use crate::messages::CliSettingsMessage;
 use std::io::{self, BufRead as _, IsTerminal as _, Write as _};
 
 use crossbeam_channel::{TryRecvError, bounded};
@@ -17,13 +18,11 @@ pub fn agreed(question: &str, yes: bool, controller: &Controller<'_>) -> Result<
         return Ok(());
     }
     if !io::stdin().is_terminal() {
-        return Err(Exit::Refused.saying(format!(
-            "{question} Nobody can be asked here: give --yes to do it. Nothing was written."
-        )));
+        return Err(Exit::Refused.saying(CliSettingsMessage::NobodyToAsk { question: question.to_string() }));
     }
     let _ = write!(io::stderr(), "{question} [y/N] ");
-    let breathe = || controller.breathe().inspect_err(|_| say("\nNothing was written."));
-    if is_yes(&line(&breathe)?) { Ok(()) } else { Err(Exit::Refused.saying("Nothing was written.")) }
+    let breathe = || controller.breathe().inspect_err(|_| say(CliSettingsMessage::StoppedAsking));
+    if is_yes(&line(&breathe)?) { Ok(()) } else { Err(Exit::Refused.saying(CliSettingsMessage::NotWritten)) }
 }
 
 /// One line from the terminal. It is read on a thread of its own, since reading cannot be called off; `breathe` is called
@@ -40,7 +39,7 @@ pub fn line(breathe: &dyn Fn() -> Result<(), Exit>) -> Result<String, Exit> {
         let _ = sender.send(line);
     });
     if let Err(error) = reader {
-        return Err(Exit::Failed.saying(format!("Could not ask: {error}. Nothing was written.")));
+        return Err(Exit::Failed.saying(CliSettingsMessage::NotAsked { error: error.to_string() }));
     }
     loop {
         match receiver.try_recv() {

@@ -1,5 +1,6 @@
 //! `brushwork settings backups` and `restore`.
 
+use crate::messages::CliSettingsMessage;
 use serde_json::json;
 
 use super::args::{BackupsArgs, RestoreArgs, WriteHow};
@@ -48,12 +49,10 @@ pub fn restore(args: &RestoreArgs, out: &mut Output, interrupt: &Interrupt) -> R
         Some(name) => find(name)?,
         None => {
             let newest = Store::of_user().backups(Some(&controller.unit)).into_iter().next();
-            newest.ok_or_else(|| {
-                Exit::Refused.saying("There is no backup of this controller yet. `brushwork settings backups` lists those of others.")
-            })?
+            newest.ok_or_else(|| Exit::Refused.saying(CliSettingsMessage::NoBackupOfThis))?
         }
     };
-    say(format!("Backup {} ({}).", backup.name, backup.unit()));
+    say(CliSettingsMessage::BackupIs { name: backup.name.clone(), unit: backup.unit() });
     write::bring_about(&controller, Some(open(&backup)?), &[], &args.how, out)
 }
 
@@ -79,10 +78,11 @@ pub fn find(name: &str) -> Result<Backup, Exit> {
     match (all.iter().find(|backup| backup.name == name), found.next(), found.next()) {
         (Some(exact), ..) => Ok(exact.clone()),
         (None, Some(only), None) => Ok(only.clone()),
-        (None, None, _) => Err(Exit::Refused
-            .saying(format!("There is no backup {name}. `brushwork settings backups` lists them."))),
-        (None, Some(_), Some(_)) => Err(Exit::Refused.saying(format!(
-            "More than one backup begins with {name}. `brushwork settings backups` lists them."
-        ))),
+        (None, None, _) => {
+            Err(Exit::Refused.saying(CliSettingsMessage::NoSuchBackup { name: name.to_string() }))
+        }
+        (None, Some(_), Some(_)) => {
+            Err(Exit::Refused.saying(CliSettingsMessage::SeveralBackups { name: name.to_string() }))
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! `brushwork settings compare`: any two of RAM, EEPROM as last known, profile, defaults, backup.
 
+use crate::messages::CliSettingsMessage;
 use brushwork_link::settings::Profile;
 
 use super::args::CompareArgs;
@@ -37,14 +38,13 @@ pub fn run(args: &CompareArgs, out: &mut Output, interrupt: &Interrupt) -> Resul
 }
 
 fn side(name: &SideName, controller: Option<&Controller<'_>>, other: Option<Side>) -> Result<Side, Exit> {
-    let refuse = |why: &str| Exit::Refused.saying(why);
     match (name, controller) {
         (SideName::File(path), _) => Ok(Side::new(path.display().to_string(), opened(profile::open(path)?))),
         (SideName::Backup(Some(name)), _) => backup(name),
         (SideName::Backup(None), Some(controller)) => {
             let store = Store::of_user();
             let newest = store.backups(Some(&controller.unit)).into_iter().next();
-            let newest = newest.ok_or_else(|| refuse("There is no backup of this controller yet."))?;
+            let newest = newest.ok_or_else(|| Exit::Refused.saying(CliSettingsMessage::NoBackup))?;
             backup(&newest.name)
         }
         (SideName::Ram, Some(controller)) => {
@@ -54,7 +54,7 @@ fn side(name: &SideName, controller: Option<&Controller<'_>>, other: Option<Side
         }
         (SideName::Eeprom, Some(controller)) => {
             let known = Store::of_user().eeprom(&controller.unit);
-            let known = known.ok_or_else(|| refuse(EEPROM_UNKNOWN))?;
+            let known = known.ok_or_else(|| Exit::Refused.saying(EEPROM_UNKNOWN))?;
             Ok(Side::new(eeprom_title(&known), known))
         }
         (SideName::Default, None) => {

@@ -1,5 +1,6 @@
 //! A connected controller whose settings are to be read or written: work runs as jobs on its device thread.
 
+use crate::messages::{CliJobMessage, CliSettingsMessage};
 use brushwork_link::Message;
 use brushwork_link::messages::ActMessage;
 use std::io::{self, IsTerminal as _, Write as _};
@@ -61,12 +62,11 @@ impl<'i> Controller<'i> {
         let client = Client::connect_to(args, PollRate::Off, running, interrupt)?;
         let version = &client.identity.version_text;
         let Some(subject) = client.identity.subject() else {
-            return Err(Exit::Refused.saying(format!(
-                "The unit at {} on {} calls itself \"{version}\", which is no model that this program knows: its \
-                 settings are not known.",
-                client.identity.place(),
-                client.identity.port
-            )));
+            return Err(Exit::Refused.saying(CliSettingsMessage::UnknownModel {
+                unit: client.identity.place(),
+                port: client.identity.port.clone(),
+                version: version.to_string(),
+            }));
         };
         // Without a list of ports a unit is told by the name of its port.
         let unit = UnitId::new(&client.identity, &list_ports().unwrap_or_default());
@@ -129,7 +129,10 @@ impl<'i> Controller<'i> {
             Err(failure) => return Err(Exit::NoLink.saying(failure)),
         };
         for unread in &report.failures {
-            say(format!("Not read: {}. {}", unread.keys.join(", "), unread.failure));
+            say(CliSettingsMessage::NotRead {
+                keys: unread.keys.join(", "),
+                failure: unread.failure.clone(),
+            });
         }
         Ok(report)
     }
@@ -156,11 +159,9 @@ impl<'i> Controller<'i> {
         // What came of an act that failed is a result too, so that it comes back after an interruption.
         let name = name.into();
         let job = Job::new(name.clone(), limit, move |wire| Ok(work(wire)));
-        let ticket = self
-            .client
-            .device()
-            .start(job)
-            .map_err(|refused| Exit::Refused.saying(format!("Could not {name}: {refused}")))?;
+        let ticket = self.client.device().start(job).map_err(|refused| {
+            Exit::Refused.saying(CliJobMessage::NotBegun { act: name.clone(), refused: refused.to_string() })
+        })?;
         let report = self.wait_for_end(&ticket, limit)?;
         let broken = explain(&report, self.interrupt.is_raised());
         match (ticket.take(), broken) {
@@ -206,7 +207,7 @@ impl<'i> Controller<'i> {
             }
         }
         let exit = if cancelled { Exit::Interrupted } else { Exit::Failed };
-        Err(exit.saying(format!("Could not {}: the work did not end in time.", ticket.name())))
+        Err(exit.saying(CliJobMessage::WorkNotInTime { act: ticket.name().clone() }))
     }
 }
 
@@ -217,12 +218,12 @@ fn explain(report: &JobReport, by_signal: bool) -> Option<Exit> {
         JobEnding::Done(()) => None,
         JobEnding::Interrupted(cause) => {
             let exit = exit_of_interruption(*cause, by_signal);
-            Some(exit.saying(format!("Could not {name} to the end: {cause}.")))
+            Some(exit.saying(CliJobMessage::NotToTheEnd { act: name.clone(), cause: cause.to_string() }))
         }
         JobEnding::Failed(failure) => Some(Exit::Failed.saying(failure)),
-        JobEnding::Panicked(word) => Some(
-            Exit::Failed.saying(format!("Could not {name}: an internal error ({word}). Please report it.")),
-        ),
+        JobEnding::Panicked(word) => {
+            Some(Exit::Failed.saying(CliJobMessage::Internal { act: name.clone(), word: word.to_string() }))
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! What acts that were cut short have left on a controller, told whenever its settings were read.
 
+use crate::messages::CliSettingsMessage;
 use brushwork_link::settings::ReadReport;
 
 use crate::output::say;
@@ -14,15 +15,16 @@ pub fn tell(unit: &UnitId, ram: &ReadReport) {
     for aftermath in aftermaths(&journals, &ram.table, &ram.image) {
         say(aftermath.headline());
         let sentences = aftermath.sentences(&ram.table);
-        sentences.iter().take(TOLD_IN_PASSING).for_each(|sentence| say(format!("  {sentence}")));
+        sentences
+            .iter()
+            .take(TOLD_IN_PASSING)
+            .for_each(|sentence| say(CliSettingsMessage::Listed { sentence: sentence.to_string() }));
         if sentences.len() > TOLD_IN_PASSING {
-            say(format!("  ... and {} more.", sentences.len() - TOLD_IN_PASSING));
+            say(CliSettingsMessage::AndMore { count: sentences.len() - TOLD_IN_PASSING });
         }
     }
     if !journals.is_empty() {
-        say(
-            "`brushwork settings unfinished` shows all of it and settles it with --finish, --undo or --forget.",
-        );
+        say(CliSettingsMessage::SeeUnfinished);
     }
 }
 

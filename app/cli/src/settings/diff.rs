@@ -1,5 +1,6 @@
 //! `brushwork settings diff`: a controller against a profile, or two profiles against each other.
 
+use crate::messages::CliSettingsMessage;
 use brushwork_link::settings::{Profile, SettingsImage, SettingsTable, Subject};
 use serde_json::json;
 
@@ -32,7 +33,7 @@ pub fn run(args: &DiffArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
         sides.insert(0, Side::of_controller(&Controller::connect(&args.connect, interrupt)?)?);
     }
     let Ok([left, right]) = <[Side; 2]>::try_from(sides) else {
-        return Err(Exit::Failed.saying("One or two profiles can be compared."));
+        return Err(Exit::Failed.saying(CliSettingsMessage::OneOrTwo));
     };
     compare(&left, &fitted(&left, right), args.json, out)
 }
@@ -60,7 +61,7 @@ pub fn fitted(one: &Side, other: Side) -> Side {
     if fitted.changes.is_empty() {
         return other;
     }
-    say(format!("{} is compared as it would be on the controller of {}:", other.name, one.name));
+    say(CliSettingsMessage::ComparedAs { right: other.name.clone(), left: one.name.clone() });
     fitted.changes.iter().for_each(say);
     Side::new(other.name, fitted.profile)
 }
@@ -89,7 +90,7 @@ pub fn compare(left: &Side, right: &Side, json: bool, out: &mut Output) -> Resul
     } else {
         print(left, right, &differences, out)?;
         if !one_sided.is_empty() {
-            say(format!("Not compared, since only one side has them: {}", one_sided.join(", ")));
+            say(CliSettingsMessage::OnOneSide { keys: one_sided.join(", ") });
         }
     }
     Ok(if differences.is_empty() { Exit::Done } else { Exit::Different })
@@ -111,6 +112,6 @@ fn warn_of_other_kind(left: &Side, right: &Side) {
         |side: &Side| format!("{} with firmware {}", side.subject().model.name, side.subject().generation);
     let (one, other) = (kind(left), kind(right));
     if one != other {
-        say(format!("Note: {} is of {one}, {} of {other}.", left.name, right.name));
+        say(CliSettingsMessage::OtherKind { left: left.name.clone(), one, right: right.name.clone(), other });
     }
 }

@@ -1,6 +1,7 @@
 //! `brushwork settings save` and `defaults`: acts on the controller's own memory, asked for and proven.
 
 use crate::messages::CliActMessage;
+use crate::messages::CliSettingsMessage;
 use brushwork_core::messages::CoreActMessage;
 use brushwork_link::settings::{DefaultsReport, SaveReport, SaveVerdict, SettingsTable};
 use serde_json::json;
@@ -68,7 +69,7 @@ pub fn save_to_eeprom(
         Ok(_) => return Err(Exit::Failed),
         Err(failure) => {
             let exit = finished.broken.unwrap_or(Exit::Refused);
-            return Err(exit.saying(format!("Nothing was saved. {failure}")));
+            return Err(exit.saying(CliSettingsMessage::NotSaved { failure }));
         }
     };
     let exit = match report.verdict {
@@ -148,7 +149,7 @@ pub fn reload(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Res
             let list = changes(&ram.table, &ram.image, &merged(&ram.image, &known.settings));
             show(args, out, &head, &list, "nothing: RAM holds the same")?;
         }
-        None => say("What EEPROM holds is not known. What was written and not saved is lost."),
+        None => say(CliSettingsMessage::EepromLost),
     }
     tell_note(&ram.table, &Act::Reload);
     let question = format!("Load the EEPROM of {} over its RAM?", controller.describe());
@@ -174,7 +175,7 @@ pub fn reload(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Res
 /// Says what an act on the memory of the table's unit does to its motor.
 fn tell_note(table: &SettingsTable, act: &Act) {
     if let Some(note) = family::of(table.subject().model.family).note_of(act) {
-        say(format!("Note: {note}"));
+        say(CliSettingsMessage::Note { note: note.to_string() });
     }
 }
 
@@ -191,7 +192,7 @@ const AT_DEFAULT: &str = "nothing: every setting is at its default";
 pub fn tell_wear(unit: &UnitId) {
     let wear = Store::of_user().wear(unit);
     if wear.level() > WearLevel::Fine {
-        say(format!("Note: {} {}", wear.sentence(), unit.limits()));
+        say(CliSettingsMessage::Wear { wear: wear.sentence(), limits: unit.limits() });
     }
 }
 

@@ -1,5 +1,6 @@
 //! `brushwork settings export`, and profiles as files.
 
+use crate::messages::CliSettingsMessage;
 use std::path::Path;
 
 use brushwork_link::settings::{OpenedProfile, Profile, ProfileFileError, Strictness};
@@ -30,7 +31,7 @@ pub fn export(args: &ExportArgs, out: &mut Output, interrupt: &Interrupt) -> Res
     if report.is_whole() {
         return Ok(Exit::Done);
     }
-    say("What could not be read is not in the profile.");
+    say(CliSettingsMessage::NotInProfile);
     Ok(Exit::NotTaken)
 }
 

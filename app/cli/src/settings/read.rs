@@ -1,5 +1,6 @@
 //! `brushwork settings read` and `reference`.
 
+use crate::messages::CliSettingsMessage;
 use std::collections::BTreeMap;
 
 use brushwork_link::settings::{ListedSetting, list, list_text};
@@ -34,7 +35,7 @@ pub fn run(args: &ReadArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
         out.line(list_text(&settings))?;
         out.lines(legend(&settings))?;
         for conflict in conflicts {
-            say(format!("Warning: {}", conflict.sentence));
+            say(CliSettingsMessage::Warning { conflict: conflict.sentence.to_string() });
         }
     }
     Ok(if report.is_whole() { Exit::Done } else { Exit::Failed })

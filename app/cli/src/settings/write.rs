@@ -129,8 +129,8 @@ fn upgraded(
     if sentences.is_empty() {
         return Ok((profile, sentences));
     }
-    say("The profile has to be changed to fit this controller:");
-    sentences.iter().for_each(|sentence| say(format!("  {sentence}")));
+    say(CliSettingsMessage::Fitted);
+    sentences.iter().for_each(|sentence| say(CliSettingsMessage::Listed { sentence: sentence.to_string() }));
     if !how.dry_run {
         ask::agreed("Use the profile with these changes?", how.yes, controller)?;
     }
@@ -150,10 +150,10 @@ fn wanted(
         let (profile, upgraded) = upgraded(controller, ram, opened, how)?;
         let asked = profile.changes_for(&ram.table, &ram.image, controller.identity().simulated);
         let asked = asked.map_err(|error| {
-            Exit::NotTaken.saying(format!(
-                "The profile does not fit {}, nothing was changed:\n{error}",
-                controller.describe()
-            ))
+            Exit::NotTaken.saying(CliSettingsMessage::NotFitting {
+                unit: controller.describe(),
+                error: error.to_string(),
+            })
         })?;
         let left_out_lines = left_out_lines(controller, ram, &profile);
         let changes = only(&ram.table, &asked.wanted, &how.only)?;
@@ -214,7 +214,7 @@ fn cannot_be(refusals: Vec<Refusal>) -> Exit {
 }
 
 fn refused(problems: &[impl Display]) -> Exit {
-    say("Nothing was written:");
+    say(CliSettingsMessage::NothingWritten);
     problems.iter().for_each(say);
     Exit::NotTaken
 }
@@ -273,7 +273,7 @@ fn perform(
         return Ok(exit);
     }
     if exit != Exit::Done {
-        say("The settings were not saved to EEPROM, since not all of them took.");
+        say(CliSettingsMessage::NotSavedEither);
         return Ok(exit);
     }
     let (report, exit) = memory::save_to_eeprom(controller, table)?;
@@ -288,7 +288,7 @@ fn tell(table: &SettingsTable, results: &Results, how: &WriteHow, out: &mut Outp
             report.warnings.iter().for_each(say);
         }
         if let Some(failure) = &report.ended_early {
-            say(format!("Writing ended early. {failure}"));
+            say(CliSettingsMessage::EndedEarly { failure: failure.to_string() });
         }
         let taken = report.rows.len() - report.did_not_take().count();
         if !how.json {

@@ -1,5 +1,6 @@
 //! Commands on standard input while simulated controllers run: their RTS line and their power.
 
+use crate::messages::CliSimMessage;
 use std::time::Duration;
 use std::{io, thread};
 
@@ -63,7 +64,7 @@ pub fn obey(line: &str, server: &SimHandle<SimulatedLine>) {
         }
         for unit in &meant {
             if let Err(error) = server.apply(*unit, step.clone()) {
-                return say(format!("Could not do \"{line}\": {error}."));
+                return say(CliSimMessage::NotDone { line: line.to_string(), error: error.to_string() });
             }
         }
     }

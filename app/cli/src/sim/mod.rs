@@ -2,12 +2,13 @@
 
 mod control;
 
+use crate::messages::CliSimMessage;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use brushwork_canopen::adapter::Form;
-use brushwork_plant::faults::{FAULT_SYNTAX, Fault};
+use brushwork_plant::faults::{FAULT_SYNTAX, Fault, FaultTextError};
 use brushwork_plant::presets::presets;
 use brushwork_plant::server::{Endpoint, Server, ServerOptions, SimHandle};
 use clap::ArgMatches;
@@ -57,8 +58,8 @@ fn simulate(args: &SimArgs, typed: &ArgMatches) -> Result<Simulated, Exit> {
 
 /// A unit that behaves as a report says. What it cannot imitate is said.
 fn imitate(report: &Path) -> Result<Simulated, Exit> {
-    let (_, started, unlike) = like(report)
-        .map_err(|why| Exit::Usage.saying(format!("Could not start the simulated controller: {why}.")))?;
+    let (_, started, unlike) =
+        like(report).map_err(|why| Exit::Usage.saying(CliSimMessage::NotStarted { why: why.to_string() }))?;
     unlike.iter().for_each(say);
     let what = format!("A unit as {} says", report.display());
     Ok(Simulated { line: SimulatedLine::new(started.machine), what, is_found: true })
@@ -70,17 +71,16 @@ fn start(args: &SimArgs, line: SimulatedLine) -> Result<SimHandle<SimulatedLine>
     let stream = args.port.index();
     let options = ServerOptions { stream, pace: args.pace, faults, seed: args.seed };
     Server::spawn(line, options, &endpoint)
-        .map_err(|error| Exit::Failed.saying(format!("Could not start the simulated controller: {error}.")))
+        .map_err(|error| Exit::Failed.saying(CliSimMessage::NotStarted { why: error.to_string() }))
 }
 
 fn endpoint(args: &SimArgs) -> Result<Endpoint, Exit> {
     match (&args.pty, &args.tcp) {
         (Some(link), _) => Ok(Endpoint::Pty { link: link.clone() }),
-        (None, Some(address)) => address.parse::<SocketAddr>().map(Endpoint::Tcp).map_err(|_| {
-            Exit::Usage.saying(format!(
-                "\"{address}\" is no address to listen on. Use for example --tcp 127.0.0.1:7000."
-            ))
-        }),
+        (None, Some(address)) => address
+            .parse::<SocketAddr>()
+            .map(Endpoint::Tcp)
+            .map_err(|_| Exit::Usage.saying(CliSimMessage::NoAddress { address: address.to_string() })),
         (None, None) if cfg!(windows) => Ok(Endpoint::Tcp(SocketAddr::from(([127, 0, 0, 1], 0)))),
         (None, None) => Ok(Endpoint::Pty { link: default_link() }),
     }
@@ -91,8 +91,12 @@ fn default_link() -> PathBuf {
 }
 
 fn fault(text: &str) -> Result<Fault, Exit> {
-    text.parse().map_err(|error| {
-        Exit::Usage.saying(format!("Could not read --fault {text}: {error}.\n\n{FAULT_SYNTAX}"))
+    text.parse().map_err(|error: FaultTextError| {
+        Exit::Usage.saying(CliSimMessage::NoFault {
+            text: text.to_string(),
+            error: error.to_string(),
+            syntax: FAULT_SYNTAX,
+        })
     })
 }
 
@@ -120,12 +124,12 @@ fn serve(
     if out.line(greeting).is_err() {
         return Err(Exit::Interrupted);
     }
-    say("Ctrl-C ends it.");
+    say(CliSimMessage::CtrlCEnds);
     let control = if args.control { control::lines() } else { None };
     let mut next_truth = Instant::now();
     while !interrupt.sleep(WATCH_INTERVAL) {
         if !server.is_running() {
-            return Err(Exit::Failed.saying("The simulated controller has ended by itself."));
+            return Err(Exit::Failed.saying(CliSimMessage::Ended));
         }
         for line in control.iter().flat_map(Receiver::try_iter) {
             control::obey(&line, server);

@@ -4,14 +4,14 @@ mod args;
 mod replay;
 mod words;
 
+use crate::messages::CliTuneMessage;
 use brushwork_core::messages::TuneMessage;
 use std::time::{Duration, Instant};
 
 use brushwork_link::{ArmScope, Event, Request, SettingsTable};
 use brushwork_tuning::axis::EncoderClass;
-use brushwork_tuning::experiment_guard::GuardOptions;
 use brushwork_tuning::report::Verdict;
-use brushwork_tuning::tune::{Excitation, Method};
+use brushwork_tuning::tune::Method;
 use brushwork_values::Motor;
 
 use super::client::ask;
@@ -22,7 +22,7 @@ use super::{Exit, Interrupt, NewFile, Output, say};
 use args::{EncoderArg, MethodArg, RunArgs};
 pub use args::{TuneArgs, TuneCommand};
 use brushwork_core::keep::TrialKeeper;
-use brushwork_core::tune::law::{Report, Request as TuneRequest};
+use brushwork_core::tune::law::{self, Report, Request as TuneRequest};
 use brushwork_core::tune::sequence::{Armed, Ended, Next, Origin, Sequence, Why, Work};
 use brushwork_core::tune::{Restored, Target, file};
 
@@ -71,7 +71,7 @@ fn tune(args: &RunArgs, method: Method, out: &mut Output, interrupt: &Interrupt)
 
 fn keep(report: &Report, file: &mut NewFile<'_>) -> Result<(), Exit> {
     let text = file::text_of(report).map_err(|why| {
-        say(format!("Could not write the report: {why}."));
+        say(CliTuneMessage::ReportNotWritten { why: why.to_string() });
         Exit::Failed
     })?;
     Ok(file.write(text.as_bytes())?)
@@ -103,25 +103,24 @@ fn session(
     let exit = match ended.interrupted.map(Why::Interrupted).or(ended.why) {
         None => None,
         Some(Why::Interrupted(cause)) => {
-            say(format!("The run was ended: {cause}. The motors were stopped."));
+            say(CliTuneMessage::Ended { cause: cause.to_string() });
             Some(exit_of_interruption(cause, stopped))
         }
         Some(Why::Failed(failure)) => Some(Exit::Refused.saying(failure)),
         Some(Why::Panicked(word)) => {
-            let text = format!("Internal error while tuning: {word}. The motors were stopped.");
-            Some(Exit::Failed.saying(text))
+            Some(Exit::Failed.saying(CliTuneMessage::Internal { word: word.to_string() }))
         }
         Some(Why::Ended(_)) if stopped => Some(Exit::Interrupted),
-        Some(Why::Ended(why)) => Some(Exit::Refused.saying(format!("The motor was not tuned: {why}."))),
+        Some(Why::Ended(why)) => {
+            Some(Exit::Refused.saying(CliTuneMessage::NotTuned { why: why.to_string() }))
+        }
     };
     if ended.owed.is_some() {
-        say(
-            "What the tuning changed could not be put back: `brushwork settings unfinished` tells what is left.",
-        );
+        say(CliTuneMessage::NotPutBack);
     }
     let Some(restored) = ended.restored else { return Err(exit.unwrap_or(Exit::Refused)) };
     if exit.is_some() {
-        say("The old gains and settings are in force again, as reading them back has shown.");
+        say(CliTuneMessage::PutBack);
     }
     if restored.loop_left_off {
         say(TuneMessage::LeftOff);
@@ -177,7 +176,7 @@ fn carry_out(
             None => {}
         }
     }
-    Err(Exit::NoLink.saying("The run did not end in its time."))
+    Err(Exit::NoLink.saying(CliTuneMessage::NotInTime))
 }
 
 fn motor(args: &RunArgs) -> Motor {
@@ -186,21 +185,11 @@ fn motor(args: &RunArgs) -> Motor {
 
 fn request(args: &RunArgs, method: Method) -> TuneRequest {
     let travel = args.travel.map(|range| (range.low, range.high));
-    TuneRequest {
-        method,
-        level: f64::from(args.level),
-        excitation: Excitation::within(travel),
-        guard: GuardOptions {
-            motor: motor(args).index(),
-            max_duty: f64::from(args.max_duty) / 100.0,
-            travel,
-            max_amps: args.max_current,
-            clear_winding: args.clear_lr,
-            ..GuardOptions::default()
-        },
-        keep: args.apply || args.save,
-        ..TuneRequest::default()
-    }
+    let (level, max_duty) = (args.level.into(), args.max_duty.into());
+    let mut request = law::request(method, level, motor(args), travel, max_duty, args.max_current);
+    request.guard.clear_winding = args.clear_lr;
+    request.keep = args.apply || args.save;
+    request
 }
 
 #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]

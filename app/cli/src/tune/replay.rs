@@ -1,5 +1,6 @@
 //! `brushwork tune replay`: same record in, same gains out.
 
+use crate::messages::CliTuneMessage;
 use std::path::Path;
 
 use super::words;
@@ -19,13 +20,11 @@ pub fn run(path: &Path, json: bool, out: &mut Output) -> Exit {
     let again = match report.replay_or_stray() {
         Ok(again) => again,
         Err(entry) => {
-            say(format!(
-                "The record in {} does not belong to this version of the tuner, or was changed: at its entry {} of {} the tuner \
-                 asks for another step. Tune again.",
-                path.display(),
-                entry + 1,
-                report.record.len()
-            ));
+            say(CliTuneMessage::OtherRecord {
+                file: path.display().to_string(),
+                entry: entry + 1,
+                of: report.record.len(),
+            });
             return Exit::Failed;
         }
     };
@@ -34,15 +33,13 @@ pub fn run(path: &Path, json: bool, out: &mut Output) -> Exit {
         return error.into();
     }
     if again == report {
-        say("The replay gives the same result to the last bit.");
+        say(CliTuneMessage::SameResult);
         words::exit_of(&again)
     } else {
-        say(format!(
-            "The replay gives another result than {} holds: it differs in {}. The report was changed, or was made on another \
-             kind of computer.",
-            path.display(),
-            differing(&report, &again)
-        ));
+        say(CliTuneMessage::OtherResult {
+            file: path.display().to_string(),
+            parts: differing(&report, &again),
+        });
         Exit::Failed
     }
 }

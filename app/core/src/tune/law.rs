@@ -1,7 +1,10 @@
 //! The families whose loops can be tuned, and what a run of any of them speaks of.
 
 use brushwork_family::tuned::{OneOf, Tuned};
+use brushwork_tuning::experiment_guard::GuardOptions;
 use brushwork_tuning::law::Law;
+use brushwork_tuning::tune::{Excitation, Method};
+use brushwork_values::Motor;
 
 /// All of them.
 pub type Families = OneOf<brushwork_mcp::McpTuned, brushwork_motion_mind::MotionMindTuned>;
@@ -26,3 +29,26 @@ pub type Trace = brushwork_tuning::trace::Trace<AnyLaw>;
 pub type Trial = brushwork_tuning::trial::Trial<AnyLaw>;
 /// What is to be tried.
 pub type TrialRequest = brushwork_tuning::trial::TrialRequest<AnyLaw>;
+
+/// A run as a person asks for it: from soft (0) to stiff (100), within a travel in counts or free, up to a duty in percent (at least 20)
+/// and a current in amperes. It puts the old gains back at its end.
+#[must_use]
+pub fn request(
+    method: Method,
+    level: f64,
+    motor: Motor,
+    travel: Option<(i64, i64)>,
+    max_duty_percent: f64,
+    max_amps: Option<f64>,
+) -> Request {
+    let max_duty = (max_duty_percent / 100.0).clamp(0.2, 1.0);
+    let guard = GuardOptions { motor: motor.index(), max_duty, travel, max_amps, ..GuardOptions::default() };
+    Request {
+        method,
+        level,
+        excitation: Excitation::within(travel),
+        guard,
+        keep: false,
+        ..Request::default()
+    }
+}

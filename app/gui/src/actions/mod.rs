@@ -4,6 +4,7 @@
 //! To add an action, add a row to the file of its menu. Nothing else has to know: the row says where it stands, which
 //! keys call it, when it can be done and why not, and which [`Command`] it is.
 
+use crate::messages::WindowStatusMessage;
 use std::borrow::Cow;
 use std::sync::OnceLock;
 
@@ -209,7 +210,10 @@ pub fn shortcuts(ctx: &Context, model: &mut Model) -> Commands {
     for action in pressed {
         match (action.ready)(model) {
             Ok(()) => commands.push((action.command)(model)),
-            Err(why) => model.messages.warn(format!("{}: {why}", action.title.trim_end_matches('…'))),
+            Err(why) => model.messages.warn(WindowStatusMessage::NotNow {
+                act: action.title.trim_end_matches('…').to_string(),
+                why: why.to_string(),
+            }),
         }
     }
     commands

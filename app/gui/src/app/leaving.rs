@@ -3,6 +3,7 @@
 //! The motors do not wait: they are stopped at once. Asked for a second time it happens at once too.
 
 use super::App;
+use crate::messages::WindowStatusMessage;
 use crate::model::ConnectionId;
 use crate::tune::model::Afterwards;
 use brushwork_link::device::Request;
@@ -39,10 +40,7 @@ impl App {
                     connection.tune.want_winding_back();
                     connection.rest();
                 }
-                self.model.messages.warn(
-                    "The motors are stopped. The window closes as soon as what the tuning run changed is put back; close it again to \
-                     close it at once.",
-                );
+                self.model.messages.warn(WindowStatusMessage::ClosesWhenPutBack);
             }
             Leaving::WhenPutBack if is_asked => self.leaving = Leaving::AtOnce,
             Leaving::No | Leaving::WhenPutBack => {}
@@ -86,10 +84,7 @@ impl App {
         connection.tune.cancel(afterwards.why());
         connection.rest();
         self.request_of(id, Request::Disarm);
-        self.model.messages.note(format!(
-            "The motors are stopped. {} as soon as what the run changed is put back.",
-            afterwards.what()
-        ));
+        self.model.messages.note(WindowStatusMessage::FollowsWhenPutBack { what: afterwards.what() });
         true
     }
 
@@ -118,13 +113,10 @@ impl App {
         let (tune, unit) = (&mut connection.tune, connection.settings.unit());
         match tune.is_winding_back(|key| unit?.on_controller(key)) {
             Some(true) => {
-                return self.model.messages.note("L and R are put back as they were before the run.");
+                return self.model.messages.note(WindowStatusMessage::WindingPutBack);
             }
             Some(false) => {
-                return self.model.messages.fail(
-                    "L and R could not be put back as they were before the run. Set them under Velocity loop, or switch the controller \
-                     off and on: its EEPROM still has them.",
-                );
+                return self.model.messages.fail(WindowStatusMessage::WindingNotPutBack);
             }
             None => {}
         }

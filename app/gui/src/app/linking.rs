@@ -1,5 +1,6 @@
 //! Links as the window opens, brings to the front and ends them.
 
+use crate::messages::WindowStatusMessage;
 use crate::messages::{WindowActMessage, WindowRemedyMessage};
 use brushwork_canopen::{NodeId, nmt};
 use brushwork_core::session::bus;
@@ -116,7 +117,7 @@ impl App {
             Phase::Opening { .. } => {
                 self.links.entry(id).opening = None;
                 connection.phase = Phase::Closed;
-                self.model.messages.note("Gave up connecting.");
+                self.model.messages.note(WindowStatusMessage::GaveUp);
             }
             Phase::Open { target } => {
                 let target = target.clone();
@@ -165,10 +166,7 @@ impl App {
         let front = &self.model.front;
         if let Some(bus) = front.bus.as_ref().filter(|_| front.phase.is_open()) {
             bus.command(nmt::Command::Start, node);
-            return self
-                .model
-                .messages
-                .note(format!("The start was sent to {node}: its heartbeat tells what comes of it."));
+            return self.model.messages.note(WindowStatusMessage::NodeStartSent { node });
         }
         let target = front.target.as_ref().and_then(|target| target.parse::<ConnectTarget>().ok());
         let Some(target) = target.filter(|_| self.model.canopen.starting.is_none()) else { return };
@@ -187,12 +185,10 @@ impl App {
         let Some(started) = &self.model.canopen.starting else { return };
         match started.try_recv() {
             Err(TryRecvError::Empty) => return ctx.request_repaint_after(OPENING_INTERVAL),
-            Ok(Ok(sentence)) => self.model.messages.note(format!("{sentence} Connect to the bus again.")),
+            Ok(Ok(sentence)) => self.model.messages.note(WindowStatusMessage::ConnectAgain { sentence }),
             Ok(Err(why)) => self.model.messages.fail(why),
             Err(TryRecvError::Disconnected) => {
-                self.model
-                    .messages
-                    .fail("Could not start the node: the system gave no thread. Try again.".to_owned());
+                self.model.messages.fail(WindowStatusMessage::NodeNotStarted);
             }
         }
         self.model.canopen.starting = None;

@@ -1,5 +1,6 @@
 //! Programs and scripts, as far as the window's one place for change has to do with them.
 
+use crate::messages::WindowStatusMessage;
 use crate::messages::{WindowActMessage, WindowCauseMessage, WindowRemedyMessage};
 use brushwork_link::Message;
 use std::path::Path;
@@ -69,7 +70,7 @@ impl App {
         self.show(Screen::MclEditor);
         let simulated = self.model.front.link.identity().is_some_and(|identity| identity.simulated);
         if !simulated {
-            self.model.messages.fail(REAL);
+            self.model.messages.fail(WindowStatusMessage::CodeIsNotPublic);
             return self.edit_mcl(MclAction::ChooseImage);
         }
         let document = self.model.mcl.front_mut();
@@ -115,15 +116,14 @@ impl App {
                     self.model.front.script.forget();
                 }
             }
-            None => self.model.messages.warn("A download runs already. Wait for it or cancel it."),
+            None => self.model.messages.warn(WindowStatusMessage::DownloadRuns),
         }
     }
 
     /// Starts the stored script. It may move motors, so it needs the armed screen.
     pub(super) fn start_script(&mut self) {
         if !self.model.front.link.arming.is_armed_for(ArmScope::Script) {
-            let text = "A script can move motors: arm the MCL Editor first, then press Run again.";
-            return self.model.messages.warn(text);
+            return self.model.messages.warn(WindowStatusMessage::ArmEditorFirst);
         }
         if self.request(Request::StartScript) {
             self.model.front.watch.note_script(true);
@@ -136,8 +136,3 @@ impl App {
         }
     }
 }
-
-/// Why no program goes to a real controller.
-const REAL: &str = "Could not download the program: the byte code of real controllers is not public, so nobody but their \
-                    maker can compile for them. Choose an image file that the maker's program has compiled: it is sent as it \
-                    is, and can be started, stopped and set to autorun from here.";

@@ -1,6 +1,7 @@
 //! Work with settings that the window asks of the device threads: whole, of the control loops, of inputs, and command by
 //! command. Whatever writes has a backup made first.
 
+use crate::messages::WindowStatusMessage;
 use brushwork_link::{Request, SettingsImage};
 
 use super::App;
@@ -17,10 +18,7 @@ impl App {
         let Some(connection) = self.model.connection_mut(id) else { return };
         if connection.tune.is_running() && !matches!(action, SettingsAction::Cancel | SettingsAction::Read) {
             connection.tune.waiting = Some(action);
-            self.model.messages.note(
-                "That waits for the end of the tuning run, so that the time-out and the gains of before are written, not those of \
-                 the run.",
-            );
+            self.model.messages.note(WindowStatusMessage::WaitsForRun);
             return;
         }
         let stream = connection.link.stream;
@@ -127,9 +125,7 @@ impl App {
         let front = &mut self.model.front;
         let saves = front.link.identity().and_then(|unit| front.family().saves(transact.command, unit));
         if front.tune.is_running() && saves.is_some() {
-            let reported =
-                "A tuning run is at work, and this command changes settings. Send it when the run has ended.";
-            self.model.messages.fail(reported.to_owned());
+            self.model.messages.fail(WindowStatusMessage::RunHoldsSettings);
             return;
         }
         let identity = front.link.identity().cloned();

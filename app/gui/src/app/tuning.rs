@@ -1,6 +1,7 @@
 //! Guided tuning: its jobs one after the other, its gains into RAM and back, its reports on the disk.
 
 use super::App;
+use crate::messages::WindowStatusMessage;
 use crate::model::loop_settings::key;
 use crate::model::{Arming, ConnectionId, Owner, Tab};
 use crate::tune::registers::image;
@@ -41,8 +42,11 @@ impl App {
             }
             TuneAction::Adjust(motor, registers) => self.adjust(which, motor, registers),
             TuneAction::SaveReport(path) => match front.tune.front(which).run() {
-                Some(run) => file::write(&run.report, &path)
-                    .map(|()| self.model.messages.note(format!("The report is in {}.", path.display()))),
+                Some(run) => file::write(&run.report, &path).map(|()| {
+                    self.model
+                        .messages
+                        .note(WindowStatusMessage::ReportIsIn { path: path.display().to_string() });
+                }),
                 None => Ok(()),
             },
             TuneAction::OpenReport(path) => self.open_report(&path),
@@ -180,7 +184,7 @@ impl App {
         tuning.panel_mut(which, motor).add(report);
         tuning.look_at(which, motor);
         let screen = which.screen().title();
-        self.model.messages.note(format!("The report of {motor} is shown on {screen}."));
+        self.model.messages.note(WindowStatusMessage::ReportShown { motor, screen });
         Ok(())
     }
 }

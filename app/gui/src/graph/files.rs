@@ -2,6 +2,7 @@
 //!
 //! Whatever takes time does so on a thread of its own; what becomes of it is said by `LiveGraph::poll_files`.
 
+use crate::messages::WindowStatusMessage;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -228,7 +229,7 @@ impl GraphFiles {
             Ok(_) => self.working.push(receiver),
             Err(error) => self.say(
                 Gravity::Error,
-                format!("Could not export: {error}. Close other programs and try again."),
+                WindowStatusMessage::NotExported { error: error.to_string() }.to_string(),
             ),
         }
     }

@@ -1,5 +1,6 @@
 //! What the actions of a person do to the open programs.
 
+use crate::messages::WindowStatusMessage;
 use egui::{Context, ViewportCommand};
 
 use super::examples::EXAMPLES;
@@ -56,7 +57,7 @@ impl Editor {
             }
             MclAction::ReplaceAll => {
                 let count = self.find.replace_all(&mut self.documents[self.front]);
-                self.say(Gravity::Note, format!("Replaced {count} places."));
+                self.say(Gravity::Note, WindowStatusMessage::Replaced { count });
             }
             MclAction::CloseFind => {
                 self.find.open = false;
@@ -155,7 +156,7 @@ impl Editor {
         let document = self.front();
         let word = document.text.slice(document.word(document.caret.head)).into_owned();
         if word.is_empty() {
-            return self.say(Gravity::Warning, "Put the caret on a name of the program first.");
+            return self.say(Gravity::Warning, WindowStatusMessage::NoNameAtCaret);
         }
         self.open_sheet(Sheet::Rename(word));
     }

@@ -1,5 +1,6 @@
 //! Opening, saving and closing, as far as questions have to be asked and answered.
 
+use crate::messages::WindowStatusMessage;
 use std::path::PathBuf;
 
 use egui::Context;
@@ -105,7 +106,10 @@ impl Editor {
                 let job = Job { title, printer: printer.trim().to_owned(), pages };
                 self.printing.begin(spooler, job, move || ctx.request_repaint());
             }
-            Err(why) => self.say(Gravity::Error, format!("Could not print {title}: {why}.")),
+            Err(why) => self.say(
+                Gravity::Error,
+                WindowStatusMessage::NotPrinted { title: title.to_string(), why: why.to_string() },
+            ),
         }
     }
 
@@ -147,10 +151,13 @@ impl Editor {
             Sheet::Image(field) => self.image = field.path(None),
             Sheet::GoToLine(text) => match text.trim().parse::<usize>() {
                 Ok(line) => self.front_mut().go_to_line(line.saturating_sub(1)),
-                Err(_) => self.say(Gravity::Warning, format!("“{}” is no line number.", text.trim())),
+                Err(_) => self.say(
+                    Gravity::Warning,
+                    WindowStatusMessage::NoLineNumber { text: text.trim().to_owned() },
+                ),
             },
             Sheet::Rename(new) => match self.front_mut().rename(new.trim()) {
-                Ok(count) => self.say(Gravity::Note, format!("Renamed in {count} places.")),
+                Ok(count) => self.say(Gravity::Note, WindowStatusMessage::Renamed { count }),
                 Err(why) => self.say(Gravity::Warning, why),
             },
             Sheet::Close { ids } => {

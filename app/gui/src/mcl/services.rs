@@ -1,5 +1,6 @@
 //! What runs beside the editor: the thread that checks, the thread of files, the journal; and what their news do to the programs.
 
+use crate::messages::WindowStatusMessage;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -47,8 +48,8 @@ impl Editor {
     }
 
     /// Something for the message line.
-    pub(super) fn say(&mut self, gravity: Gravity, text: impl Into<String>) {
-        self.said.push((gravity, text.into()));
+    pub(super) fn say(&mut self, gravity: Gravity, text: impl std::fmt::Display) {
+        self.said.push((gravity, text.to_string()));
     }
 
     /// Takes in what the threads found and asks for what comes next. `shown` is whether the screen is in view. Hands back what
@@ -90,7 +91,10 @@ impl Editor {
             Done::Reloaded(id, result) => self.reloaded(id, result),
             Done::Saved { id, path, revision, result } => self.saved(id, path, revision, result),
             Done::Exported(path, what, Ok(())) => {
-                self.say(Gravity::Note, format!("{what}: {}.", path.display()));
+                self.say(
+                    Gravity::Note,
+                    WindowStatusMessage::FileIs { what, path: path.display().to_string() },
+                );
             }
             Done::Exported(_, _, Err(failure)) => self.say(Gravity::Error, failure.to_string()),
             Done::Changed(changed) => self.changed_on_disk(changed),

@@ -3,6 +3,8 @@
 //! Everything here follows from the device thread's events. What an event means for the rest of the window (a
 //! sentence to say, a slider to put back to zero) is handed back as [`Effect`]s.
 
+use crate::messages::WindowStatusMessage;
+use brushwork_core::messages::CoreStatusMessage;
 use brushwork_link::capability::CapabilityMap;
 use brushwork_link::device::{DisarmReason, StopReport};
 use brushwork_link::{
@@ -160,7 +162,10 @@ impl LinkView {
                 self.refusals.clear();
                 vec![
                     Effect::AtRest,
-                    Effect::Say(Gravity::Warning, format!("Armed for {scope}. Space or Esc stops.")),
+                    Effect::Say(
+                        Gravity::Warning,
+                        WindowStatusMessage::Armed { scope: scope.to_string() }.to_string(),
+                    ),
                 ]
             }
             Event::Disarmed(reason) => self.disarmed(&reason),
@@ -174,7 +179,9 @@ impl LinkView {
             Event::Failure(failure) => vec![Effect::Say(Gravity::Error, failure.to_string())],
             Event::Lost(failure) => self.lost(&failure),
             Event::LoaderEntered => Vec::new(),
-            Event::Closed => vec![Effect::Say(Gravity::Note, "Disconnected.".to_owned()), Effect::Ended],
+            Event::Closed => {
+                vec![Effect::Say(Gravity::Note, WindowStatusMessage::Disconnected.to_string()), Effect::Ended]
+            }
             Event::Driven { .. }
             | Event::RawReply { .. }
             | Event::Transacted { .. }
@@ -277,7 +284,10 @@ impl LinkView {
             DisarmReason::DeadMan => Gravity::Warning,
             _ => Gravity::Note,
         };
-        vec![Effect::AtRest, Effect::Say(gravity, format!("{reason}. The motors are being stopped."))]
+        vec![
+            Effect::AtRest,
+            Effect::Say(gravity, CoreStatusMessage::Stopping { reason: reason.clone() }.to_string()),
+        ]
     }
 
     fn refused(&mut self, reasons: Vec<Failure>) -> Vec<Effect> {

@@ -1,5 +1,7 @@
 //! The message line: what happened last, until it is dismissed or something else happens.
 
+use std::fmt::Display;
+
 /// How grave a message is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Gravity {
@@ -27,8 +29,8 @@ pub struct Messages {
 const KEPT: usize = 200;
 
 impl Messages {
-    pub fn say(&mut self, gravity: Gravity, text: impl Into<String>) {
-        let message = Message { gravity, text: text.into() };
+    pub fn say(&mut self, gravity: Gravity, text: impl Display) {
+        let message = Message { gravity, text: text.to_string() };
         if self.past.len() == KEPT {
             self.past.remove(0);
         }
@@ -40,15 +42,15 @@ impl Messages {
         }
     }
 
-    pub fn note(&mut self, text: impl Into<String>) {
+    pub fn note(&mut self, text: impl Display) {
         self.say(Gravity::Note, text);
     }
 
-    pub fn warn(&mut self, text: impl Into<String>) {
+    pub fn warn(&mut self, text: impl Display) {
         self.say(Gravity::Warning, text);
     }
 
-    pub fn fail(&mut self, text: impl Into<String>) {
+    pub fn fail(&mut self, text: impl Display) {
         self.say(Gravity::Error, text);
     }
 

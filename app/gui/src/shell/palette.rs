@@ -1,5 +1,6 @@
 //! The command palette: everything that can be done, searched by name and run by key.
 
+use crate::messages::WindowStatusMessage;
 use egui::{
     Align2, Area, Button, Context, Frame, Id, Key, Modifiers, Order, Role, ScrollArea, Ui, WidgetInfo, vec2,
 };
@@ -54,7 +55,9 @@ enum Done {
 fn run(row: &Row, model: &mut Model, commands: &mut Commands) {
     match &row.ready {
         Ok(()) => commands.push(row.command.clone()),
-        Err(why) => model.messages.warn(format!("{}: {why}", row.name)),
+        Err(why) => model
+            .messages
+            .warn(WindowStatusMessage::NotNow { act: row.name.to_string(), why: why.to_string() }),
     }
 }
 

@@ -1,5 +1,6 @@
 //! The list of transactions: only rows in sight are laid out.
 
+use crate::messages::WindowStatusMessage;
 use std::path::PathBuf;
 
 use egui::{
@@ -41,7 +42,7 @@ pub fn head_ui(ui: &mut Ui, model: &mut Model, _commands: &mut Commands) {
     {
         ui.ctx().copy_text(traffic.log.to_text());
         let count = traffic.log.shown_len();
-        model.messages.note(format!("Copied {count} transactions."));
+        model.messages.note(WindowStatusMessage::Copied { count });
     }
     let paused = model.front.traffic.log.paused;
     let pause = if paused { "Record again" } else { "Pause log" };

@@ -1,12 +1,12 @@
 //! Tuning as the window keeps it: what is set, what runs, and the runs so far, for each loop of each motor.
 
+use crate::messages::WindowStatusMessage;
 use brushwork_core::messages::TuneMessage;
-use brushwork_core::tune::law::{AnyRegisters, Report, Request as TuneRequest, Setup, Trial};
+use brushwork_core::tune::law::{AnyRegisters, Report, Request as TuneRequest, Setup, Trial, request};
 use brushwork_link::{Event, Identity, Sample, SettingValue, Stream};
 use brushwork_tuning::axis::EncoderClass;
-use brushwork_tuning::experiment_guard::GuardOptions;
 use brushwork_tuning::report::Verdict;
-use brushwork_tuning::tune::{Excitation, Method};
+use brushwork_tuning::tune::Method;
 use brushwork_values::Motor;
 
 use super::calibration::Calibration;
@@ -110,21 +110,9 @@ impl Setting {
     fn request(&self, motor: Motor) -> TuneRequest {
         let (low, high) = self.travel;
         let travel = (!self.turns_freely).then_some((low.round() as i64, high.round() as i64));
-        TuneRequest {
-            method: self.method,
-            level: self.level,
-            excitation: Excitation::within(travel),
-            guard: GuardOptions {
-                motor: motor.index(),
-                max_duty: (self.max_duty_percent / 100.0).clamp(0.2, 1.0),
-                travel,
-                max_amps: (self.max_amps > 0.0).then_some(self.max_amps),
-                ..GuardOptions::default()
-            },
-            verify: self.tries,
-            keep: false,
-            ..TuneRequest::default()
-        }
+        let max_amps = (self.max_amps > 0.0).then_some(self.max_amps);
+        let request = request(self.method, self.level, motor, travel, self.max_duty_percent, max_amps);
+        TuneRequest { verify: self.tries, ..request }
     }
 }
 
@@ -440,17 +428,16 @@ impl Tuning {
                 said
             }
             (Work::PutBack, ..) if is_owed => owed_effect(),
-            (Work::PutBack, ..) => Effect::Say(
-                Gravity::Note,
-                format!("The gains of {} from before the run are back.", target.motor),
-            ),
+            (Work::PutBack, ..) => {
+                Effect::Say(Gravity::Note, WindowStatusMessage::GainsBack { motor: target.motor }.to_string())
+            }
             _ => Effect::Say(
                 Gravity::Warning,
-                format!(
-                    "{} was not tuned: {}.",
-                    target.motor,
-                    why.as_deref().unwrap_or("nothing came of it")
-                ),
+                WindowStatusMessage::NotTunedFor {
+                    motor: target.motor,
+                    why: why.unwrap_or_else(|| "nothing came of it".to_owned()),
+                }
+                .to_string(),
             ),
         });
         // What matters most is said last, which is what stays in view.
@@ -564,22 +551,26 @@ fn said_of(motor: Motor, report: &Report, why: Option<&str>, is_owed: bool) -> E
         (Verdict::Refused, Some(cause)) => {
             let why = why.map_or_else(|| cause.sentence().into_owned(), |why| format!("{why}."));
             let back = if is_owed { "" } else { " The motors were stopped and the old gains are in force." };
-            Effect::Say(Gravity::Warning, format!("{motor} was not tuned: {why}{back}"))
+            Effect::Say(
+                Gravity::Warning,
+                WindowStatusMessage::NotTuned { motor, why: why.to_string(), back: back.to_string() }
+                    .to_string(),
+            )
         }
         (Verdict::TunedWithWarnings, Some(cause)) => Effect::Say(
             Gravity::Warning,
-            format!("{motor} is tuned, with something to know: {}", cause.sentence()),
+            WindowStatusMessage::TunedWithWarning { motor, cause: cause.sentence().to_string() }.to_string(),
         ),
-        _ => Effect::Say(
-            Gravity::Note,
-            format!("{motor} is tuned. The old gains are in force until you apply the proposed ones."),
-        ),
+        _ => Effect::Say(Gravity::Note, WindowStatusMessage::TunedNotApplied { motor }.to_string()),
     }
 }
 
 fn said_of_trial(motor: Motor, trial: &Trial) -> Effect {
     match trial.cause {
-        None => Effect::Say(Gravity::Note, format!("{motor} behaves as predicted with these gains.")),
-        Some(cause) => Effect::Say(Gravity::Warning, format!("{motor}: {}", cause.sentence())),
+        None => Effect::Say(Gravity::Note, WindowStatusMessage::AsPredicted { motor }.to_string()),
+        Some(cause) => Effect::Say(
+            Gravity::Warning,
+            WindowStatusMessage::Tuned { motor, cause: cause.sentence().to_string() }.to_string(),
+        ),
     }
 }

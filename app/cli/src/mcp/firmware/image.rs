@@ -1,5 +1,6 @@
 //! `brushwork firmware image`: an image for simulated controllers.
 
+use crate::messages::CliFirmwareMessage;
 use brushwork_mcp_wire::loader::SimulatedImage;
 use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::packet_serial::Generation;
@@ -9,13 +10,13 @@ use crate::{Exit, NewFile, Output};
 
 /// Writes the image.
 pub fn run(args: &ImageArgs, out: &mut Output) -> Result<Exit, Exit> {
-    let model = models::lookup(&args.model).ok_or_else(|| {
-        Exit::Usage.saying(format!("\"{}\" is no model. `brushwork sim --list` names them.", args.model))
-    })?;
+    let model = models::lookup(&args.model)
+        .ok_or_else(|| Exit::Usage.saying(CliFirmwareMessage::NoModel { name: args.model.to_string() }))?;
     let generation = Generation::from_number(args.generation).unwrap_or(Generation::Gen1);
     let image = SimulatedImage { model, version: args.version.clone(), generation };
-    let bytes =
-        image.bytes().map_err(|error| Exit::Usage.saying(format!("Could not make the image: {error}.")))?;
+    let bytes = image
+        .bytes()
+        .map_err(|error| Exit::Usage.saying(CliFirmwareMessage::NoImage { error: error.to_string() }))?;
     NewFile::new(&args.file, args.replace).write(&bytes)?;
     out.line(format!(
         "{} holds {} bytes that make a simulated {} report version {} ({generation}). No real controller can use them.",

@@ -1,5 +1,6 @@
 //! `brushwork firmware update`: backup, risk, loader, pages.
 
+use crate::messages::{CliFirmwareMessage, CliScriptMessage};
 use std::io::{self, IsTerminal as _, Write as _};
 use std::path::Path;
 use std::sync::Arc;
@@ -29,8 +30,12 @@ const SLICE: Duration = Duration::from_millis(50);
 /// Updates, or resumes an update.
 pub fn run(args: &UpdateArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let target = client::target(&args.connect)?;
-    let bytes = std::fs::read(&args.file)
-        .map_err(|error| Exit::Failed.saying(format!("Could not read {}: {error}.", args.file.display())))?;
+    let bytes = std::fs::read(&args.file).map_err(|error| {
+        Exit::Failed.saying(CliScriptMessage::NotRead {
+            file: args.file.display().to_string(),
+            error: error.to_string(),
+        })
+    })?;
     if args.resume {
         let image = resumed_image(args, bytes, &target)?;
         accept(args, is_simulated(args, &target), &|| interrupted(interrupt))?;
@@ -73,7 +78,7 @@ fn note(args: &UpdateArgs, controller: &Controller<'_>, kept: &Kept) -> Result<(
     };
     Store::of_user()
         .open_update(&begun)
-        .map_err(|error| Exit::Failed.saying(format!("{error} Nothing was sent.")))
+        .map_err(|error| Exit::Failed.saying(CliFirmwareMessage::NotSentFor { why: error.to_string() }))
 }
 
 /// The image for a controller that has told who it is.
@@ -88,13 +93,16 @@ fn fresh_image(args: &UpdateArgs, bytes: Vec<u8>, controller: &Controller<'_>) -
 fn resumed_image(args: &UpdateArgs, bytes: Vec<u8>, target: &ConnectTarget) -> Result<Image, Exit> {
     let name = args.model.as_deref().unwrap_or_default();
     let Some(model) = models::lookup(name) else {
-        return Err(Exit::Usage.saying(format!("\"{name}\" is no model. `brushwork sim --list` names them.")));
+        return Err(Exit::Usage.saying(CliFirmwareMessage::NoModel { name: name.to_string() }));
     };
     suit_model(bytes, model, is_simulated(args, target)).map_err(|error| not_sent(args, &error))
 }
 
 fn not_sent(args: &UpdateArgs, why: &dyn std::fmt::Display) -> Exit {
-    Exit::Refused.saying(format!("{} is not sent: {why}.", args.file.display()))
+    Exit::Refused.saying(CliFirmwareMessage::FileNotSent {
+        file: args.file.display().to_string(),
+        why: why.to_string(),
+    })
 }
 
 fn is_simulated(args: &UpdateArgs, target: &ConnectTarget) -> bool {
@@ -103,26 +111,24 @@ fn is_simulated(args: &UpdateArgs, target: &ConnectTarget) -> bool {
 
 /// Shows the risks and waits until they are accepted.
 fn accept(args: &UpdateArgs, simulated: bool, breathe: &dyn Fn() -> Result<(), Exit>) -> Result<(), Exit> {
-    say("Before you update, read this:");
+    say(CliFirmwareMessage::ReadThis);
     for risk in risks(simulated) {
-        say(format!("  - {risk}"));
+        say(CliFirmwareMessage::Risk { risk: risk.to_string() });
     }
     if args.resume {
-        say(format!("  - {RESUME_NOTE}"));
+        say(CliFirmwareMessage::Risk { risk: RESUME_NOTE.to_string() });
     }
     if args.accept_risk {
         return Ok(());
     }
     if !io::stdin().is_terminal() {
-        return Err(Exit::Refused.saying(
-            "Nobody can be asked here: give --accept-risk to update all the same. Nothing was sent.",
-        ));
+        return Err(Exit::Refused.saying(CliFirmwareMessage::AcceptRisk));
     }
     let _ = write!(io::stderr(), "Type \"update\" to accept these risks: ");
     if ask::line(breathe)?.trim() == "update" {
         return Ok(());
     }
-    Err(Exit::Refused.saying("Nothing was sent."))
+    Err(Exit::Refused.saying(CliFirmwareMessage::NotSent))
 }
 
 fn interrupted(interrupt: &Interrupt) -> Result<(), Exit> {
@@ -138,7 +144,7 @@ fn back_up(args: &UpdateArgs, controller: &Controller<'_>, out: &mut Output) -> 
     let report = controller.read()?;
     let exit = if report.is_whole() { Exit::Failed } else { Exit::Refused };
     let kept = update::keep(&report, controller.identity(), &controller.unit, &Store::of_user())
-        .map_err(|why| exit.saying(format!("{why} Nothing was sent.")))?;
+        .map_err(|why| exit.saying(CliFirmwareMessage::NotSentFor { why: why.to_string() }))?;
     let profile = &kept.profile;
     let model = profile.subject.model.key;
     let path = args.backup.clone().unwrap_or_else(|| {
@@ -148,7 +154,7 @@ fn back_up(args: &UpdateArgs, controller: &Controller<'_>, out: &mut Output) -> 
     });
     backup_file(&path, args)
         .write(profile.to_json().as_bytes())
-        .map_err(|error| Exit::Failed.saying(format!("{error} Nothing was sent.")))?;
+        .map_err(|error| Exit::Failed.saying(CliFirmwareMessage::NotSentFor { why: error.to_string() }))?;
     out.line(format!("The settings are backed up in {}.", path.display()))?;
     Ok(kept)
 }
@@ -156,10 +162,9 @@ fn back_up(args: &UpdateArgs, controller: &Controller<'_>, out: &mut Output) -> 
 /// Stops the motors and sends the controller into its loader; ends the link.
 fn enter_loader(controller: &Controller<'_>, interrupt: &Interrupt) -> Result<(), Exit> {
     let request = Request::EnterLoader(RiskAccepted::by_the_user());
-    controller
-        .device()
-        .request(request)
-        .map_err(|refused| Exit::Refused.saying(format!("Could not enter the firmware loader: {refused}")))?;
+    controller.device().request(request).map_err(|refused| {
+        Exit::Refused.saying(CliFirmwareMessage::NotEntered { refused: refused.to_string() })
+    })?;
     let deadline = Instant::now() + ENTER_LIMIT;
     while Instant::now() < deadline {
         match client::next_event(controller.device(), interrupt)? {
@@ -168,14 +173,13 @@ fn enter_loader(controller: &Controller<'_>, interrupt: &Interrupt) -> Result<()
             _ => {}
         }
     }
-    Err(Exit::NoLink.saying(
-        "Could not enter the firmware loader: the controller did not get there in time. Nothing was erased.",
-    ))
+    Err(Exit::NoLink.saying(CliFirmwareMessage::LoaderLate))
 }
 
 /// Sends it and shows how far it is, until it ends. Ctrl-C counts only before the erase.
 fn send(place: LoaderPlace, image: Image, interrupt: &Interrupt) -> Result<Sent, Exit> {
-    let upload = Upload::start(place, image).map_err(|why| Exit::Failed.saying(format!("{why}.")))?;
+    let upload = Upload::start(place, image)
+        .map_err(|why| Exit::Failed.saying(CliFirmwareMessage::Because { why: why.to_string() }))?;
     let mut shown = String::new();
     let mut warned = false;
     let mut erasing = false;
@@ -184,9 +188,7 @@ fn send(place: LoaderPlace, image: Image, interrupt: &Interrupt) -> Result<Sent,
             warned = true;
             upload.cancel();
             if erasing {
-                say(
-                    "\nThe update cannot be stopped now: the controller would be left without firmware. It goes on.",
-                );
+                say(CliFirmwareMessage::GoesOn);
             }
         }
         match upload.events().recv_timeout(SLICE) {
@@ -196,15 +198,13 @@ fn send(place: LoaderPlace, image: Image, interrupt: &Interrupt) -> Result<Sent,
             }
             Ok(UploadEvent::Ended(Ok(sent))) => return Ok(sent),
             Ok(UploadEvent::Ended(Err(failure))) => {
-                say(format!("\n{failure}"));
+                say(CliFirmwareMessage::Failed { failure });
                 // Before the erase a signal ends it; nothing else has that code.
                 return Err(if warned && !erasing { Exit::Interrupted } else { Exit::NoLink });
             }
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => {
-                return Err(
-                    Exit::Failed.saying("Could not send the firmware: an internal error. Please report it.")
-                );
+                return Err(Exit::Failed.saying(CliFirmwareMessage::InternalError));
             }
         }
     }
@@ -236,7 +236,7 @@ fn verify(
     interrupt: &Interrupt,
 ) -> Result<Exit, Exit> {
     out.line(sent.sentence())?;
-    say("Waiting for the controller to come back.");
+    say(CliFirmwareMessage::Waiting);
     let target = client::target(&args.connect)?;
     let options = client::options(&target, &args.connect, PollRate::Off);
     let back = update::wait_for_return(&target, options, simulation.as_ref(), &|| !interrupt.is_raised());
@@ -244,9 +244,7 @@ fn verify(
         if interrupt.is_raised() {
             return Err(Exit::Interrupted);
         }
-        say(format!(
-            "The controller did not come back, so that nobody knows whether the update is good: {why}"
-        ));
+        say(CliFirmwareMessage::NotBack { why: why.to_string() });
         return Err(client::with_loader(Exit::NoLink, &args.connect.connect));
     }
     let controller = Controller::connect_to(&args.connect, simulation, interrupt)?;

@@ -1,5 +1,6 @@
 //! `brushwork mcl build`: scripts into images, with what they take of each model.
 
+use crate::messages::CliScriptMessage;
 use std::path::{Path, PathBuf};
 
 use brushwork_script::diagnostic::PlacedDiagnostic;
@@ -59,9 +60,7 @@ struct Report {
 /// Builds every file that has no error.
 pub fn run(args: &BuildArgs, out: &mut Output) -> Result<Exit, Exit> {
     if args.output.is_some() && args.files.len() > 1 {
-        return Err(Exit::Usage.saying(
-            "--output names one image, but several scripts are given. Leave it out, or build one at a time.",
-        ));
+        return Err(Exit::Usage.saying(CliScriptMessage::OneOutput));
     }
     let mut files = Vec::new();
     let mut exit = Exit::Done;
@@ -119,8 +118,7 @@ fn build(path: &Path, args: &BuildArgs, out: &mut Output) -> Result<Built, Exit>
 fn target(path: &Path, args: &BuildArgs) -> Result<PathBuf, Exit> {
     match &args.output {
         Some(output) => Ok(output.clone()),
-        None if is_standard(path) => Err(Exit::Usage
-            .saying("A script on standard input has no name: say with --output where the image goes.")),
+        None if is_standard(path) => Err(Exit::Usage.saying(CliScriptMessage::NoName)),
         None => Ok(path.with_extension(EXTENSION)),
     }
 }

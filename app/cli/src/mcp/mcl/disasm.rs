@@ -1,5 +1,6 @@
 //! `brushwork mcl disasm`: the instructions of scripts and images.
 
+use crate::messages::CliScriptMessage;
 use std::path::Path;
 
 use brushwork_script::disassembly::disassemble;
@@ -38,6 +39,9 @@ fn list(path: &Path) -> Result<String, Exit> {
 /// The program in a file that holds an image, with or without the header for people.
 pub fn program_in(bytes: &[u8], path: &Path) -> Result<Option<Program>, Exit> {
     let image = image::of_file(bytes).or_else(|| bytes.starts_with(&image::MAGIC).then_some(bytes));
-    let failed = |error| Exit::Failed.saying(format!("Could not read {}: {error}.", path.display()));
+    let failed = |error: image::ImageError| {
+        Exit::Failed
+            .saying(CliScriptMessage::NotRead { file: path.display().to_string(), error: error.to_string() })
+    };
     image.map(image::decode).transpose().map_err(failed)
 }

@@ -1,5 +1,6 @@
 //! `brushwork mcl run`: a script on a simulated controller in virtual time, its stream on standard output.
 
+use crate::messages::CliScriptMessage;
 use std::io::{IsTerminal as _, Read as _};
 use std::path::Path;
 use std::time::Duration;
@@ -35,8 +36,11 @@ pub fn run(args: &RunArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Ex
     ended?;
     match rig.run() {
         _ if interrupt.is_raised() => Err(Exit::Interrupted),
-        Run::Faulted { line, what } => Err(Exit::ScriptFaulted
-            .saying(format!("{}:{line}: the script was stopped by a fault: {what}.", args.file.display()))),
+        Run::Faulted { line, what } => Err(Exit::ScriptFaulted.saying(CliScriptMessage::Faulted {
+            file: args.file.display().to_string(),
+            line,
+            what: what.to_string(),
+        })),
         Run::Running { .. } | Run::Ended { .. } => Ok(Exit::Done),
     }
 }
@@ -91,11 +95,7 @@ fn report(rig: &Rig) {
         Run::Ended { line } => format!("ended on line {line}"),
         Run::Faulted { line, what } => format!("faulted on line {line}: {what}"),
     };
-    say(format!(
-        "{how}; {:.3} s of controller time, {} instructions",
-        rig.now().as_secs_f64(),
-        rig.executed()
-    ));
+    say(CliScriptMessage::Ran { how, seconds: rig.now().as_secs_f64(), instructions: rig.executed() });
 }
 
 /// Standard input, read by a thread of its own, so that Ctrl-C and the script's time do not wait for it.

@@ -1,5 +1,6 @@
 //! `brushwork script download`.
 
+use crate::messages::CliScriptMessage;
 use std::path::Path;
 
 use brushwork_mcp_client::messages::McpActMessage;
@@ -31,8 +32,10 @@ pub fn image_of(file: &Path) -> Result<ScriptImage, Exit> {
     let bytes = read_bytes(file).map_err(|error| Exit::Failed.saying(error))?;
     let is_text = file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mcl"));
     let bytes = if is_text { compiled(file, bytes)? } else { bytes };
-    ScriptImage::from_file(&bytes)
-        .map_err(|error| Exit::Failed.saying(format!("Could not use {}: {error}.", file.display())))
+    ScriptImage::from_file(&bytes).map_err(|error| {
+        Exit::Failed
+            .saying(CliScriptMessage::NotUsed { file: file.display().to_string(), error: error.to_string() })
+    })
 }
 
 fn compiled(file: &Path, bytes: Vec<u8>) -> Result<Vec<u8>, Exit> {

@@ -2,6 +2,7 @@
 //!
 //! Starting needs arming, as driving does, and the arming is this loop's: a terminal that hangs ends the script too.
 
+use crate::messages::CliScriptMessage;
 use std::time::{Duration, Instant};
 
 use brushwork_link::device::{ArmScope, DisarmReason, Event, Request};
@@ -43,7 +44,7 @@ fn run(controller: &Controller<'_>, duration: Option<Duration>) -> Result<Exit, 
         match controller.next_event()? {
             Some(Event::Failure(failure)) => return Err(Exit::Refused.saying(failure)),
             Some(Event::Disarmed(reason)) => {
-                say(format!("{reason}. The script and both motors are being stopped."));
+                say(CliScriptMessage::Stopping { reason: reason.to_string() });
                 return Err(if reason == DisarmReason::LinkLost { Exit::NoLink } else { Exit::Refused });
             }
             _ => {}

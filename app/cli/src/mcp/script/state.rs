@@ -1,5 +1,6 @@
 //! `brushwork script autorun` and `status`.
 
+use crate::messages::CliScriptMessage;
 use std::time::Duration;
 
 use brushwork_link::settings::{Ending, begin_command, end_act};
@@ -41,7 +42,7 @@ pub fn autorun(args: &AutorunArgs, out: &mut Output, interrupt: &Interrupt) -> R
     } else {
         out.line(sentence(kept))?;
         if wanted.is_some() {
-            say("It is in the controller's RAM; `brushwork settings save` saves it with the other settings.");
+            say(CliScriptMessage::AutorunInRam);
         }
     }
     Ok(Exit::Done)

@@ -1,5 +1,6 @@
 //! What the graph of a link does with files, once per frame and when it is asked to.
 
+use crate::messages::WindowStatusMessage;
 use std::time::{Duration, SystemTime};
 
 use brushwork_link::device::Sample;
@@ -149,7 +150,7 @@ impl LiveGraph {
             Ok(recorder) => self.files.recording = Some(Recording { recorder, base, stopping: None }),
             Err(error) => self.files.say(
                 Gravity::Error,
-                format!("Could not record: {error}. Close other programs and try again."),
+                WindowStatusMessage::NotRecorded { error: error.to_string() }.to_string(),
             ),
         }
     }
