@@ -30,6 +30,8 @@ messages! {
         EepromLost "What EEPROM holds is not known. What was written and not saved is lost.",
         Note { note: String } "Note: {note}",
         Wear { wear: String, limits: &'static str } "Note: {wear} {limits}",
+        RawUndo { before: i64 } "`brushwork settings raw --undo` writes the {before} from before.",
+        NoRawNumber "No raw number was written to this controller from this computer.",
         NotInProfile "What could not be read is not in the profile.",
         Warning { conflict: String } "Warning: {conflict}",
         Fitted "The profile has to be changed to fit this controller:",

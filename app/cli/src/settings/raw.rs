@@ -3,6 +3,7 @@
 //! It has a backup and a journal like every write, is read back, and is noted for the report of `brushwork examine`. No other command writes
 //! past what the table of settings allows.
 
+use crate::messages::CliSettingsMessage;
 use brushwork_core::examine::RawWrite;
 use brushwork_core::keep::{Store, today};
 use brushwork_link::settings::{ReadReport, Row, SettingsImage};
@@ -50,7 +51,7 @@ pub fn run(args: &RawArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Ex
     let undo = noted.before;
     store.note_raw_write(&controller.unit, noted).map_err(|error| Exit::Failed.saying(error))?;
     if let Some(before) = undo {
-        say(format!("`brushwork settings raw --undo` writes the {before} from before."));
+        say(CliSettingsMessage::RawUndo { before });
     }
     Ok(exit)
 }
@@ -60,7 +61,7 @@ fn newest(writes: &[RawWrite]) -> Result<RawNumber, Exit> {
     let undoable = writes.last().and_then(|newest| Some((newest, newest.before?)));
     match undoable {
         Some((newest, before)) => Ok(RawNumber { key: newest.key.clone(), raw: before }),
-        None => Err(Exit::Refused.saying("No raw number was written to this controller from this computer.")),
+        None => Err(Exit::Refused.saying(CliSettingsMessage::NoRawNumber)),
     }
 }
 
