@@ -221,6 +221,21 @@ fn every_line_is_found_read_driven_and_stopped_or_refused_for_its_lateness() {
     });
 }
 
+/// A simulated Motion Mind on a late line, found and selected.
+fn motion_mind(text: &str, latency_ms: u64) -> (VirtualLink<SimulatedLine>, Identity) {
+    let simulator = simulator::asked_for(text).expect("it is one");
+    let bus = SimulatedLine::new(simulator.start(text).expect("the presets make a motor").machine);
+    let options = DeviceOptions { family: FamilyChoice::of(MOTION_MIND), ..DeviceOptions::default() };
+    let mut link = VirtualLink::over(bus, options, vec![late(latency_ms)], 1);
+    let is_selected = |event: &Event| matches!(event, Event::Selected { .. });
+    assert!(run_until(&mut link, 120, is_selected), "{text}, {latency_ms} ms: {:?}", link.events);
+    let unit = link.events.iter().find_map(|(_, event)| match event {
+        Event::Connected(unit) => Some(unit.clone()),
+        _ => None,
+    });
+    (link, unit.expect("it was selected"))
+}
+
 /// A Motion Mind has no time-out of its own: no lateness keeps it from being driven, it is only told.
 #[test]
 fn a_motion_mind_is_found_read_driven_and_stopped_on_every_line() {
@@ -229,18 +244,9 @@ fn a_motion_mind_is_found_read_driven_and_stopped_on_every_line() {
         for latency_ms in LATENCIES_MS {
             let case = (protocol, baud, latency_ms);
             let text = format!("motion-mind-3,mode=3,protocol={protocol},baud={baud}");
-            let simulator = simulator::asked_for(&text).expect("it is one");
-            let bus = SimulatedLine::new(simulator.start(&text).expect("the presets make a motor").machine);
-            let options = DeviceOptions { family: FamilyChoice::of(MOTION_MIND), ..DeviceOptions::default() };
-            let mut link = VirtualLink::over(bus, options, vec![late(latency_ms)], 1);
-            let is_selected = |event: &Event| matches!(event, Event::Selected { .. });
-            assert!(run_until(&mut link, 120, is_selected), "{case:?}: {:?}", link.events);
+            let (mut link, unit) = motion_mind(&text, latency_ms);
             let found_s = link.now().as_secs_f64();
-            let unit = link.events.iter().find_map(|(_, event)| match event {
-                Event::Connected(unit) => Some(unit.clone()),
-                _ => None,
-            });
-            let subject = unit.and_then(|unit| unit.subject()).expect("the model is known");
+            let subject = unit.subject().expect("the model is known");
             let is_status = |event: &Event| matches!(event, Event::Status(_));
             assert!(run_until(&mut link, 30, is_status), "{case:?}: no status");
             let read =
@@ -362,18 +368,9 @@ fn a_motion_mind_is_tuned_over_a_line_or_the_line_is_refused_for_what_it_takes()
         for latency_ms in [0, 400] {
             let case = (protocol, baud, latency_ms);
             let text = format!("motion-mind-3,mode=4,protocol={protocol},baud={baud}");
-            let simulator = simulator::asked_for(&text).expect("it is one");
-            let bus = SimulatedLine::new(simulator.start(&text).expect("the presets make a motor").machine);
-            let options = DeviceOptions { family: FamilyChoice::of(MOTION_MIND), ..DeviceOptions::default() };
-            let mut link = VirtualLink::over(bus, options, vec![late(latency_ms)], 1);
-            let is_selected = |event: &Event| matches!(event, Event::Selected { .. });
-            assert!(run_until(&mut link, 120, is_selected), "{case:?}: {:?}", link.events);
-            let unit = link.events.iter().find_map(|(_, event)| match event {
-                Event::Connected(unit) => Some(unit.clone()),
-                _ => None,
-            });
+            let (mut link, unit) = motion_mind(&text, latency_ms);
             let target = Target { motor: Motor::M1, encoder: None, stream: None };
-            let came = tune(&mut link, &unit.expect("it was selected"), target, Method::Pid);
+            let came = tune(&mut link, &unit, target, Method::Pid);
             let is_right = match &came {
                 Ok(report) => report.verdict != Verdict::Refused && latency_ms == 0,
                 Err(why) => names_the_line(why),
