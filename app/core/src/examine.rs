@@ -17,7 +17,7 @@ use brushwork_family::messages::{
 };
 use brushwork_family::tuned::Registers;
 use brushwork_family::{Restored, Simulator, Started, Tuned, simulator};
-use brushwork_link::settings::{Ending, WriteReport, begin_command, begin_trial, end_act, write};
+use brushwork_link::settings::{Ending, WriteReport, begin_command, begin_trial, end_act, write_watched};
 use brushwork_link::{Failure, Identity, Job, ReadReport, Subject, WriteOptions, families};
 use brushwork_values::Motor;
 
@@ -192,7 +192,7 @@ impl Taking {
                 let held = before.image.iter().filter(|(key, _)| touches(step, key));
                 let held = held.map(|(key, value)| (key.to_owned(), value)).collect();
                 let on = context.describe();
-                let written = write(context, &before.table, &held, options);
+                let written = write_watched(context, &before.table, &held, options, &before.image);
                 let is_back = written.as_ref().is_ok_and(WriteReport::is_complete);
                 end_act(context, &mut **keeper.lock(), if is_back { Ending::Known } else { Ending::Open });
                 match written {

@@ -33,7 +33,7 @@ pub use family::{Argument, Conversion, FamilySettings, Fit, Lists, PlanContext, 
 pub use image::SettingsImage;
 pub use keep::{
     Act, Aftermath, Ending, Entry, Held, Journal, JournalError, Keeper, Known, begin_command, begin_trial,
-    defaults_kept, end_act, reload_kept, save_kept, write_kept, write_kept_knowing,
+    defaults_kept, end_act, reload_kept, save_kept, write_kept, write_kept_knowing, write_watched,
 };
 pub use kind::{Coding, Kind};
 pub use listing::{ListedSetting, list, list_text};

@@ -7,7 +7,8 @@ use brushwork_link::Failure;
 use brushwork_link::Message;
 use brushwork_link::device::{Job, JobContext, JobTicket, QueuedJob};
 use brushwork_link::settings::{
-    Ending, Keeper, Known, SettingsImage, SettingsTable, WriteOptions, begin_trial, end_act, write,
+    Ending, Keeper, Known, SettingsImage, SettingsTable, WriteOptions, begin_trial, end_act, read_all,
+    write_watched,
 };
 
 use super::unit_key::UnitKey;
@@ -136,13 +137,14 @@ fn calibrating_done(
     keeper: &TrialKeeper,
     opens: bool,
 ) -> Result<Done, Failure> {
-    if opens {
-        let is_changed = |key: &str| wanted.get(key).is_some();
-        begin_trial(context, *table.subject(), &is_changed, &mut **keeper.lock())?;
-    }
+    let is_changed = |key: &str| wanted.get(key).is_some();
+    let before = match opens {
+        true => begin_trial(context, *table.subject(), &is_changed, &mut **keeper.lock())?,
+        false => read_all(context, *table.subject())?,
+    };
     // What is put back was read from the unit.
     let options = WriteOptions { as_read: !opens, ..options };
-    let result = write(context, table, wanted, options);
+    let result = write_watched(context, table, wanted, options, &before.image);
     match &result {
         Ok(report) if !opens && report.is_complete() => {
             end_act(context, &mut **keeper.lock(), Ending::Known);

@@ -10,7 +10,7 @@ use super::super::step::WriteOptions;
 use super::super::subject::Subject;
 use super::super::table::SettingsTable;
 use super::super::write::{WriteError, write};
-use super::super::write_report::{RowState, WriteReport};
+use super::super::write_report::{RowOutcome, RowState, WriteReport};
 use super::journal::Act;
 use super::keeper::{Ending, Entry, Keeper};
 use crate::failure::Failure;
@@ -129,15 +129,7 @@ fn write_over(
 ) -> Result<WriteReport, WriteError> {
     begin(wire, Act::Write, before, wanted.clone(), keeper)
         .map_err(|failure| WriteError::NotKept { failure })?;
-    let mut result = write(wire, table, wanted, options);
-    if let Ok(report) = &mut result {
-        // What was read before a restart is stale: only a look that finds nothing new ends it.
-        let mut looks = 0;
-        while report.ended_early.is_none() && looks < LOOKS && look_again(wire, table, &before.image, report)
-        {
-            looks += 1;
-        }
-    }
+    let result = write_watched(wire, table, wanted, options, &before.image);
     let ending = match &result {
         Ok(report) if is_conclusive(report) => Ending::Known,
         Ok(_) => Ending::Open,
@@ -145,6 +137,36 @@ fn write_over(
     };
     end_act(wire, keeper, ending);
     result
+}
+
+/// As [`write()`], with a look at everything afterwards, by which a unit that restarted in the middle is found out. `before` is what it held.
+/// For whoever keeps backup and journal himself.
+pub fn write_watched(
+    wire: &mut dyn Wire,
+    table: &SettingsTable,
+    wanted: &SettingsImage,
+    options: WriteOptions,
+    before: &SettingsImage,
+) -> Result<WriteReport, WriteError> {
+    let mut report = write(wire, table, wanted, options)?;
+    // What was read before a restart is stale: only a look that finds nothing new ends it.
+    for _ in 0..LOOKS {
+        let is_known = !look_again(wire, table, before, &mut report);
+        if report.ended_early.is_some() || is_known && is_canary_alive(wire, table, &mut report) {
+            break;
+        }
+    }
+    Ok(report)
+}
+
+/// Whether one value that the write has changed still stands once all has been read: a restart late in the last look, when only values that did not
+/// change were left to read, is seen by nothing else.
+fn is_canary_alive(wire: &mut dyn Wire, table: &SettingsTable, report: &mut WriteReport) -> bool {
+    let is_changed = |row: &&RowOutcome| row.state == RowState::Taken && row.before != Some(row.wanted);
+    let canary = report.rows.iter().find(is_changed).and_then(|row| Some((table.row(&row.key)?, row.wanted)));
+    let Some((row, wanted)) = canary.filter(|(row, _)| row.has_wire_form()) else { return true };
+    report.transactions += 1;
+    read_rows(wire, &[row]).is_ok_and(|reading| reading.image.get(&row.key) == Some(wanted))
 }
 
 /// A unit that restarted in the middle, while it was read for the backup too, has lost more than what came back otherwise: what had been read

@@ -12,7 +12,7 @@ mod keeper;
 
 pub use acts::{
     Known, begin_command, begin_trial, defaults_kept, end_act, reload_kept, save_kept, write_kept,
-    write_kept_knowing,
+    write_kept_knowing, write_watched,
 };
 pub use aftermath::{Aftermath, Held};
 pub use journal::{Act, Journal, JournalError};
