@@ -6,6 +6,7 @@
 mod bench;
 
 use brushwork_cli::family::Family as Commands;
+use brushwork_core::guardian;
 use brushwork_family::{Examiner, Simulator, examine, simulator};
 use brushwork_gui::run::{WindowOptions, run as open_window};
 use brushwork_gui::screens::face::Window;
@@ -71,6 +72,13 @@ pub fn install() {
 /// Runs the program: a command, or the window where none is given.
 #[must_use]
 pub fn run() -> ExitCode {
+    let mut words = std::env::args().skip(1);
+    if words.next().is_some_and(|word| word == guardian::COMMAND) {
+        return brushwork_cli::guardian::run(words);
+    }
+    if let Ok(program) = std::env::current_exe() {
+        guardian::install(program);
+    }
     install();
     brushwork_cli::run(
         |window| {

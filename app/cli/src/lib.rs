@@ -13,6 +13,7 @@ mod examine;
 pub mod examples;
 mod exit;
 pub mod family;
+pub mod guardian;
 pub mod interrupt;
 mod list;
 pub mod mcp;

@@ -4,6 +4,7 @@
 #![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
 
 pub mod examine;
+pub mod guardian;
 pub mod keep;
 pub mod messages;
 pub mod motion;

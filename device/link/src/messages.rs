@@ -64,6 +64,13 @@ messages! {
 }
 
 messages! {
+    /// What is to be known of who stops the motors when this program dies.
+    pub enum GuardMessage {
+        Missing { detail: String } "No second process watches over this line ({detail}): if this program dies, nothing but the controller's own time-out stops the motors.",
+    }
+}
+
+messages! {
     /// What became of a save to EEPROM.
     pub enum SaveMessage {
         Verified "The settings are saved; they were read back from EEPROM.",

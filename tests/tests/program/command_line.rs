@@ -6,6 +6,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
+use crate::guardian;
 use brushwork_canopen::NodeId;
 use brushwork_canopen::adapter::Form;
 use brushwork_mcp_sim::controller::ControllerConfig;
@@ -258,6 +259,8 @@ fn is_stopped_by_the_controller(signal: &str) {
         let mut program = driving(&controller);
         // Whatever is looked at below was alive until then, or had stopped the motors itself.
         let was_alive = program.is_running() && controller.look(is_driven);
+        // Its guardian would be quicker. A lost machine takes both.
+        guardian::of(program.id()).into_iter().for_each(guardian::kill);
         program.signal(signal);
         let off = controller.wait_until_off();
         println!("SIG{signal}: {off:?}, time-out {FACTORY_TIME_OUT:?}");

@@ -13,6 +13,7 @@ mod examine;
 mod firmware;
 mod firmware_that_lacks;
 mod foreign_clients;
+mod guardian;
 mod killed_clients;
 mod mcl;
 mod monitor_command;

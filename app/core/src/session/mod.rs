@@ -15,6 +15,7 @@ use brushwork_link::family::{FamilyRef, families};
 use brushwork_link::transport::{ConnectTarget, OpenError, PortInfo, Stream, Transport, list_ports, ports};
 use brushwork_link::{Clock, FamilyChoice, HiddenSettings};
 
+use crate::guardian;
 use crate::keep::Store;
 
 pub mod bus;
@@ -198,6 +199,7 @@ fn spawn_on_can(
         // Hidden settings are found by address, which nodes share.
         hidden: alone.map(|simulation| simulation as Arc<dyn HiddenSettings>),
         capabilities: keeper(simulation.as_deref()),
+        guardian: if simulation.is_none() { guardian::of_program() } else { None },
         ..DeviceOptions::default()
     };
     let CanLine { transport, search, monitor } =
@@ -235,6 +237,7 @@ fn spawn(
         simulated: simulation.is_some(),
         hidden,
         capabilities: keeper(simulation.as_deref()),
+        guardian: if simulation.is_none() { guardian::of_program() } else { None },
         ..DeviceOptions::default()
     };
     let device = DeviceThread::spawn(transport, clock, options).map_err(SessionError::Thread)?;

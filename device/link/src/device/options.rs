@@ -3,6 +3,7 @@
 use super::poll_rate::PollRate;
 use crate::capability::KeepsCapabilities;
 use crate::family::FamilyChoice;
+use crate::guardian::Guardian;
 use crate::transport::Stream;
 use crate::wire::HiddenSettings;
 use std::sync::Arc;
@@ -61,6 +62,8 @@ pub struct DeviceOptions {
     pub hidden: Option<Arc<dyn HiddenSettings>>,
     /// Where what firmware answers is kept from one session to the next; `None` keeps it for this one.
     pub capabilities: Option<Arc<dyn KeepsCapabilities>>,
+    /// What stops the motors when this program dies; none where the controllers are simulated inside of it, and die with it.
+    pub guardian: Option<Arc<dyn Guardian>>,
     /// How often the signals are read at first.
     pub poll: PollRate,
     /// Events that the channel to the window holds.
@@ -78,6 +81,7 @@ impl Default for DeviceOptions {
             simulated: false,
             hidden: None,
             capabilities: None,
+            guardian: None,
             poll: PollRate::DEFAULT,
             event_capacity: 1024,
             request_capacity: 64,

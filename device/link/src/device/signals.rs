@@ -5,10 +5,11 @@
 
 use crate::clock::{Clock, nanoseconds};
 use crate::exchange::{Interruption, Watch};
+use crate::guardian::LineGuard;
 use crossbeam_channel::{Receiver, Sender, bounded};
 use std::cell::{Cell, RefCell};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 /// How long a motion command lives unless the window renews it.
@@ -28,6 +29,8 @@ pub struct Signals {
     disarms: AtomicU64,
     closing: AtomicBool,
     wake: Sender<()>,
+    /// Who stops the motors when this program dies.
+    guard: Mutex<Option<Box<dyn LineGuard>>>,
 }
 
 impl Signals {
@@ -43,6 +46,7 @@ impl Signals {
             disarms: AtomicU64::new(0),
             closing: AtomicBool::new(false),
             wake,
+            guard: Mutex::default(),
         };
         (Arc::new(signals), woken)
     }
@@ -60,6 +64,24 @@ impl Signals {
         let now = self.clock.now();
         if self.motion_dies_at().is_none_or(|dies_at| now < dies_at) {
             self.renewed_at.fetch_max(nanoseconds(now), Ordering::SeqCst);
+        }
+        self.with_guard(|guard| guard.lives());
+    }
+
+    /// Has a guard from now on.
+    pub fn set_guard(&self, guard: Option<Box<dyn LineGuard>>) {
+        *self.guard.lock().unwrap_or_else(PoisonError::into_inner) = guard;
+    }
+
+    /// Whether there is a guard that lives.
+    pub fn is_guarded(&self) -> bool {
+        self.guard.lock().unwrap_or_else(PoisonError::into_inner).as_deref().is_some_and(LineGuard::is_there)
+    }
+
+    /// Tells the guard something, if there is one.
+    pub fn with_guard(&self, tell: impl FnOnce(&dyn LineGuard)) {
+        if let Some(guard) = self.guard.lock().unwrap_or_else(PoisonError::into_inner).as_deref() {
+            tell(guard);
         }
     }
 
@@ -137,6 +159,9 @@ impl Guard {
     pub fn motion_begins(&self, asked_at: Duration) {
         let since = self.signals.motion_since.load(Ordering::SeqCst);
         let asked_at = nanoseconds(asked_at);
+        if since == AT_REST {
+            self.signals.with_guard(|guard| guard.moving(true));
+        }
         let since = if since == AT_REST { asked_at } else { since.max(asked_at) };
         self.signals.motion_since.store(since, Ordering::SeqCst);
     }
@@ -148,7 +173,9 @@ impl Guard {
 
     /// The motors were stopped.
     pub fn motion_ends(&self) {
-        self.signals.motion_since.store(AT_REST, Ordering::SeqCst);
+        if self.signals.motion_since.swap(AT_REST, Ordering::SeqCst) != AT_REST {
+            self.signals.with_guard(|guard| guard.moving(false));
+        }
     }
 
     /// When the motion dies unless it is renewed.
@@ -208,6 +235,7 @@ impl Guard {
 
 impl Watch for Guard {
     fn interruption(&self, now: Duration) -> Option<Interruption> {
+        self.signals.with_guard(|guard| guard.lives());
         if self.stop_waits() {
             return Some(Interruption::Stop);
         }

@@ -11,6 +11,7 @@ use crate::capability::{CapabilityBook, KeepsCapabilities};
 use crate::clock::Clock;
 use crate::device::StopBytes;
 use crate::transport::Transport;
+use std::process::Stdio;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -286,6 +287,11 @@ impl Exchange {
     #[must_use]
     pub fn byte_time(&self) -> Option<Duration> {
         self.transport.byte_time()
+    }
+
+    /// A second way to write to the line, for another process.
+    pub fn second_way(&mut self) -> Option<Stdio> {
+        self.transport.second_way()
     }
 
     /// The port as a person would name it.

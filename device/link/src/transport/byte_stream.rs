@@ -1,5 +1,6 @@
 //! A two-way stream of bytes to a controller, and why bytes could not be moved.
 
+use std::process::Stdio;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -28,6 +29,11 @@ pub trait Transport: Send {
     /// adapter's latency timer and the operating system together.
     fn latency(&self) -> Duration {
         Duration::from_millis(60)
+    }
+
+    /// Another way to write to the same far end, for a second process, which has it as its standard input; `None` where there is none.
+    fn second_way(&mut self) -> Option<Stdio> {
+        None
     }
 }
 

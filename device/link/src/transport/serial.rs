@@ -5,6 +5,7 @@ use super::error::OpenError;
 use super::refused;
 use serialport::{ClearBuffer, ErrorKind, SerialPort};
 use std::io;
+use std::process::Stdio;
 use std::time::Duration;
 
 /// An open serial port: eight data bits, no parity, one stop bit, no flow control.
@@ -13,6 +14,7 @@ pub struct SerialTransport {
     path: String,
     byte_time: Duration,
     timeout: Duration,
+    second: Option<Stdio>,
 }
 
 impl SerialTransport {
@@ -21,10 +23,12 @@ impl SerialTransport {
     /// RTS is raised where the port has it, since it forces packet serial on USB (MCP manual 1.9.3). Ports without that
     /// line, such as pseudo-terminals, answer ENOTTY, which is no error.
     pub fn open(path: &str, baud: u32) -> Result<Self, OpenError> {
+        // Before the port is taken for this program alone. That it cannot be had is told when something is armed.
+        let second = second_way(path);
         let mut port = open_port(path, baud).map_err(|error| explain(path, baud, &error))?;
         let _ = port.write_request_to_send(true);
         let byte_time = Duration::from_secs(10) / baud.max(1);
-        Ok(Self { port, path: path.to_owned(), byte_time, timeout: WRITE_TIMEOUT })
+        Ok(Self { port, path: path.to_owned(), byte_time, timeout: WRITE_TIMEOUT, second })
     }
 
     /// Sets the wait of the next read or write; a system call on some systems, so only when it changes.
@@ -81,6 +85,26 @@ impl Transport for SerialTransport {
     fn byte_time(&self) -> Option<Duration> {
         Some(self.byte_time)
     }
+
+    fn second_way(&mut self) -> Option<Stdio> {
+        self.second.take()
+    }
+}
+
+/// The port as a plain file. It does not wait for a carrier, nor does it become this program's terminal.
+#[cfg(unix)]
+fn second_way(path: &str) -> Option<Stdio> {
+    use rustix::fs::{Mode, OFlags, open};
+    let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::NONBLOCK | OFlags::CLOEXEC;
+    let file = open(path, flags, Mode::empty()).ok()?;
+    // A port that another program holds would be kept from being opened anew.
+    rustix::termios::isatty(&file).then(|| file.into())
+}
+
+/// A port of Windows can be opened once.
+#[cfg(not(unix))]
+fn second_way(_path: &str) -> Option<Stdio> {
+    None
 }
 
 fn open_port(path: &str, baud: u32) -> serialport::Result<Box<dyn SerialPort>> {

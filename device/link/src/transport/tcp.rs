@@ -7,6 +7,8 @@ use super::byte_stream::{Transport, TransportError, WRITE_TIMEOUT};
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 use std::io::{self, Read, Write};
 use std::net::{Shutdown, TcpStream, ToSocketAddrs};
+#[cfg(unix)]
+use std::process::Stdio;
 use std::thread::JoinHandle;
 use std::time::Duration;
 
@@ -117,6 +119,12 @@ impl Transport for TcpTransport {
 
     fn latency(&self) -> Duration {
         Duration::from_millis(250)
+    }
+
+    #[cfg(unix)]
+    fn second_way(&mut self) -> Option<Stdio> {
+        let stream = self.stream.try_clone().ok()?;
+        Some(std::os::fd::OwnedFd::from(stream).into())
     }
 }
 

@@ -17,7 +17,7 @@ messages! {
 messages! {
     /// What drives a motor besides this program, and what arming and stopping did to a loop.
     pub enum MotionMindDriverMessage {
-        NoTimeout "A Motion Mind has no serial time-out: if this program or the cable dies, the motor goes on with what it was last told. Have a switch for the motor power at hand.",
+        NoTimeout "A Motion Mind has no serial time-out: if the cable or this computer dies, the motor goes on with what it was last told. Have a switch for the motor power at hand.",
         LoopSwitchedOn "The output of its loop was switched off (DISABLEPID in FUNCTION). It was switched on again, in RAM: the loop holds the motor where it stands.",
         LongRamp { seconds: f64 } "Its ramp takes {seconds:.1} s from full drive to 0 (VELOCITYLIMIT, TIMER). Stop takes the ramp away for as long as it needs.",
         LoopLeftOff "Its loop did not hold the motor still, so its output was left switched off (DISABLEPID in FUNCTION, in RAM): the motor stands, but nothing holds it. The next Arm or `drive` switches the loop on again, and so does a reset of the unit. A loop that shakes its motor needs other gains: lower PTERM and ITERM, or tune it.",

@@ -96,7 +96,7 @@ impl DeviceLoop {
         all.filter(|index| everything || self.units[*index].moved || armed && *index == selected).collect()
     }
 
-    fn stop_bytes(&self, reason: &DisarmReason) -> StopBytes {
+    pub(super) fn stop_bytes(&self, reason: &DisarmReason) -> StopBytes {
         if self.phase == Phase::Connecting {
             return self.family.stop_bytes(self.options.addresses);
         }

@@ -3,6 +3,7 @@
 //! Each step does the most urgent thing that is due: what breaks in (Stop, dead-man, disarm, close), then a request, then
 //! one reading of the sweep. Read [`DeviceLoop::step`] first; requests, readings, halts and jobs stand in a file each.
 
+mod guarding;
 mod halting;
 mod jobs;
 mod loader;
@@ -93,6 +94,7 @@ impl DeviceLoop {
             units: Vec::new(),
             selected: 0,
             armed: None,
+            held: Vec::new(),
             sweep: Sweep::new(now),
             statistics_at: now + STATISTICS_INTERVAL,
             phase: Phase::Connecting,
@@ -234,6 +236,8 @@ impl DeviceLoop {
         }
         self.guard.set_armed(false, self.signals.disarms());
         self.guard.motion_ends();
+        self.tend_guard();
+        self.dismiss_guard();
         self.phase = Phase::Ended;
         self.tell_capabilities();
         self.outbox.send(last);
@@ -241,6 +245,7 @@ impl DeviceLoop {
 
     /// Statistics, traffic and waiting events.
     fn keep_house(&mut self) {
+        self.tend_guard();
         let now = self.clock.now();
         if now >= self.statistics_at && self.phase == Phase::Running {
             self.statistics_at = now + STATISTICS_INTERVAL;

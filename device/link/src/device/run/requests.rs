@@ -147,9 +147,11 @@ impl DeviceLoop {
     }
 
     fn enter_armed(&mut self, scope: ArmScope, check: ArmCheck, disarms: u64) {
-        let ArmCheck { controller_timeout, warnings, .. } = check;
+        let ArmCheck { controller_timeout, mut warnings, .. } = check;
         let armed = Armed { scope, controller_timeout };
+        warnings.extend(self.have_guard());
         self.armed = Some(armed);
+        self.tend_guard();
         self.guard.set_armed(true, disarms);
         self.restart_sweep();
         self.tell_armed(armed, warnings);

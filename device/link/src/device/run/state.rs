@@ -43,6 +43,8 @@ pub struct DeviceLoop {
     pub(super) units: Vec<Unit>,
     pub(super) selected: usize,
     pub(super) armed: Option<Armed>,
+    /// What the guard was told last: whether something is armed, and of each unit whether it moved and its script was started.
+    pub(super) held: Vec<(bool, bool)>,
     pub(super) poll: PollRate,
     /// Whether sweeps read the input pins too.
     pub(super) reads_signals: bool,

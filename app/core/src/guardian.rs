@@ -1,0 +1,275 @@
+//! A second process of this program for each line that is armed. It does nothing until the first one dies, however that may be, and then
+//! writes the stop.
+//!
+//! Its standard input is the port, opened a second time; its standard output is the end of a pipe to read from, which the system closes when
+//! the first process dies. A first process that lives and stands still while motors may move is ended before anything is written, so that two
+//! never speak at once.
+
+use std::io::{self, BufRead, BufReader, Read, Write};
+use std::path::PathBuf;
+use std::process::{Child, Command, Stdio};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::time::{Duration, Instant};
+
+use brushwork_link::device::StopBytes;
+use brushwork_link::guardian::{Guardian, LineGuard};
+use crossbeam_channel::{RecvTimeoutError, bounded};
+use serde::{Deserialize, Serialize};
+
+/// First argument of the second process.
+pub const COMMAND: &str = "guardian";
+
+/// How often a program that lives says so at the most.
+const LIFE_INTERVAL: Duration = Duration::from_millis(40);
+/// A program that says nothing for so long while motors may move stands still: the dead-man inside of it, 250 ms, and 100 ms more.
+const STANDS_STILL: Duration = Duration::from_millis(350);
+/// A wait that took so much longer than it should was this process's own standing still.
+const OWN_LATENESS: Duration = Duration::from_millis(100);
+/// How long a killed program may take to be gone.
+const GONE_LIMIT: Duration = Duration::from_secs(2);
+/// When the stop is written, counted from the death. The first may end up behind the torn packet of a program that died while it wrote, which a
+/// controller drops after 10 ms (MCP manual 2.2) or 5 ms (Motion Mind manual 5.1.1).
+const STOP_AT: [Duration; 4] =
+    [Duration::ZERO, Duration::from_millis(20), Duration::from_millis(60), Duration::from_millis(200)];
+/// Orders that wait to be looked at.
+const WAITING_ORDERS: usize = 64;
+/// How long a port may take no bytes.
+const WRITE_LIMIT: Duration = Duration::from_millis(200);
+
+/// What the second process is told, a line of JSON each.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Order {
+    /// What to write when the program dies, with so much silence between two.
+    Hold { writes: Vec<Vec<u8>>, gap_ms: u64 },
+    /// There is nothing to stop.
+    Release,
+    /// Whether a motion command may be in effect.
+    Moving(bool),
+    /// The program lives.
+    Lives,
+}
+
+static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+
+/// Makes known which program is this one, so that it can be started a second time.
+pub fn install(program: PathBuf) {
+    // Twice the same in tests.
+    let _ = PROGRAM.set(program);
+}
+
+/// Who watches over lines of this program, where it was installed.
+#[must_use]
+pub fn of_program() -> Option<Arc<dyn Guardian>> {
+    PROGRAM.get().map(|program| Arc::new(Second(program.clone())) as Arc<dyn Guardian>)
+}
+
+#[derive(Debug)]
+struct Second(PathBuf);
+
+impl Guardian for Second {
+    fn start(&self, port: &str, line: Stdio) -> io::Result<Box<dyn LineGuard>> {
+        let (orders, tell) = io::pipe()?;
+        never_wait(&tell)?;
+        let mut command = Command::new(&self.0);
+        command.args([COMMAND, &std::process::id().to_string(), port]);
+        command.stdin(line).stdout(orders).stderr(Stdio::null());
+        // A folder that is to be unmounted would be held, and Ctrl-C of the terminal would end it with the program.
+        command.current_dir("/");
+        apart(&mut command);
+        #[expect(clippy::disallowed_methods, reason = "`Process` owns it, and it ends with its pipe")]
+        let child = command.spawn()?;
+        Ok(Box::new(Process {
+            child: Mutex::new(child),
+            tell: Mutex::new(Some(tell)),
+            begun_at: Instant::now(),
+            told_ms: AtomicU64::new(0),
+        }))
+    }
+}
+
+#[cfg(unix)]
+fn never_wait(pipe: &io::PipeWriter) -> io::Result<()> {
+    Ok(rustix::io::ioctl_fionbio(pipe, true)?)
+}
+
+#[cfg(not(unix))]
+fn never_wait(_pipe: &io::PipeWriter) -> io::Result<()> {
+    Err(io::Error::new(io::ErrorKind::Unsupported, "this system has no second way to a port"))
+}
+
+#[cfg(unix)]
+fn apart(command: &mut Command) {
+    use std::os::unix::process::CommandExt as _;
+    command.process_group(0);
+}
+
+#[cfg(not(unix))]
+fn apart(_command: &mut Command) {}
+
+/// The second process of one line.
+#[derive(Debug)]
+struct Process {
+    child: Mutex<Child>,
+    tell: Mutex<Option<io::PipeWriter>>,
+    begun_at: Instant,
+    /// When it was last told that the program lives, ms after its begin.
+    told_ms: AtomicU64,
+}
+
+impl Process {
+    fn tell(&self, order: &Order) {
+        let Ok(mut line) = serde_json::to_vec(order) else { return };
+        line.push(b'\n');
+        let tell = self.tell.lock().unwrap_or_else(PoisonError::into_inner);
+        // A pipe takes so little at one go or not at all. It is full when the second process stands still, which no order mends.
+        let _ = tell.as_ref().map(|mut tell| tell.write_all(&line));
+    }
+}
+
+impl LineGuard for Process {
+    fn hold(&self, stop: &StopBytes) {
+        let gap_ms = u64::try_from(stop.gap.as_millis()).unwrap_or_default();
+        self.tell(&Order::Hold { writes: stop.writes(), gap_ms });
+    }
+
+    fn release(&self) {
+        self.tell(&Order::Release);
+    }
+
+    fn moving(&self, moving: bool) {
+        self.tell(&Order::Moving(moving));
+    }
+
+    fn is_there(&self) -> bool {
+        let mut child = self.child.lock().unwrap_or_else(PoisonError::into_inner);
+        child.try_wait().is_ok_and(|ended| ended.is_none())
+    }
+
+    fn lives(&self) {
+        let now_ms = u64::try_from(self.begun_at.elapsed().as_millis()).unwrap_or(u64::MAX);
+        let told_ms = self.told_ms.load(Ordering::Relaxed);
+        if now_ms.saturating_sub(told_ms) >= LIFE_INTERVAL.as_millis() as u64 {
+            self.told_ms.store(now_ms, Ordering::Relaxed);
+            self.tell(&Order::Lives);
+        }
+    }
+}
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        // The closed pipe is the end of it. It has the port, which can be opened again only when it is gone.
+        drop(self.tell.lock().unwrap_or_else(PoisonError::into_inner).take());
+        let _ = self.child.lock().unwrap_or_else(PoisonError::into_inner).wait();
+    }
+}
+
+/// What the second process does for all its life. `end_first` ends the first one, if it is there still.
+pub fn stand_guard(orders: impl Read + Send + 'static, mut line: impl Write, end_first: impl FnOnce()) {
+    let (sender, inbox) = bounded(WAITING_ORDERS);
+    let read = move || {
+        let lines = BufReader::new(orders).lines().map_while(Result::ok);
+        for order in lines.map_while(|line| serde_json::from_str::<Order>(&line).ok()) {
+            if sender.send(order).is_err() {
+                return;
+            }
+        }
+    };
+    // Without the thread nothing is heard, and the channel is closed as if the program had died.
+    let _reader = std::thread::Builder::new().name("orders".to_owned()).spawn(read);
+    let (mut held, mut is_moving) = (None, false);
+    loop {
+        let waits_from = Instant::now();
+        let order = match held.is_some() && is_moving {
+            true => inbox.recv_timeout(STANDS_STILL),
+            false => inbox.recv().map_err(|_| RecvTimeoutError::Disconnected),
+        };
+        match order {
+            Ok(Order::Hold { writes, gap_ms }) => held = Some((writes, Duration::from_millis(gap_ms))),
+            Ok(Order::Release) => held = None,
+            Ok(Order::Moving(moving)) => is_moving = moving,
+            Ok(Order::Lives) => {}
+            Err(RecvTimeoutError::Timeout) => {
+                if waits_from.elapsed() > STANDS_STILL + OWN_LATENESS {
+                    continue;
+                }
+                end_first();
+                // Its pipe closes when it is gone.
+                let gone_by = Instant::now() + GONE_LIMIT;
+                while inbox.recv_deadline(gone_by).is_ok() {}
+                break;
+            }
+            Err(RecvTimeoutError::Disconnected) => break,
+        }
+    }
+    let Some((writes, gap)) = held else { return };
+    let died_at = Instant::now();
+    for at in STOP_AT {
+        std::thread::sleep((died_at + at).saturating_duration_since(Instant::now()));
+        for (turn, bytes) in writes.iter().enumerate() {
+            if turn > 0 {
+                std::thread::sleep(gap);
+            }
+            write_patiently(&mut line, bytes);
+        }
+    }
+}
+
+/// A port that does not wait says when it is full.
+fn write_patiently(line: &mut impl Write, mut bytes: &[u8]) {
+    let until = Instant::now() + WRITE_LIMIT;
+    while !bytes.is_empty() && Instant::now() < until {
+        match line.write(bytes) {
+            Ok(count) => bytes = &bytes[count..],
+            Err(error) if error.kind() == io::ErrorKind::WouldBlock => {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            // The port is gone, and there is nobody to tell.
+            Err(_) => return,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lines(orders: &[Order]) -> Vec<u8> {
+        orders
+            .iter()
+            .flat_map(|order| serde_json::to_string(order).unwrap().into_bytes().into_iter().chain(*b"\n"))
+            .collect()
+    }
+
+    fn written(orders: &[Order]) -> Vec<u8> {
+        let mut line = Vec::new();
+        stand_guard(io::Cursor::new(lines(orders)), &mut line, || panic!("it is dead already"));
+        line
+    }
+
+    fn hold(byte: u8) -> Order {
+        Order::Hold { writes: vec![vec![byte, byte], vec![0xff]], gap_ms: 0 }
+    }
+
+    #[test]
+    fn the_last_stop_that_was_told_is_written_again_and_again_when_the_pipe_closes() {
+        assert_eq!(written(&[hold(1), Order::Moving(true), hold(7)]), [7, 7, 0xff].repeat(STOP_AT.len()));
+    }
+
+    #[test]
+    fn nothing_is_written_where_nothing_can_move() {
+        assert!(written(&[]).is_empty());
+        assert!(written(&[hold(1), Order::Moving(true), Order::Release]).is_empty());
+    }
+
+    #[test]
+    fn a_program_that_stands_still_while_it_moves_motors_is_ended_before_the_stop_is_written() {
+        let (orders, mut tell) = io::pipe().unwrap();
+        tell.write_all(&lines(&[hold(1), Order::Moving(true), Order::Lives])).unwrap();
+        let mut line = Vec::new();
+        stand_guard(orders, &mut line, || drop(tell));
+        assert_eq!(line, [1, 1, 0xff].repeat(STOP_AT.len()));
+    }
+}
