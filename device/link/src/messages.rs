@@ -10,6 +10,7 @@ messages! {
         OfRow { title: String, why: Message } "{title}: {why}",
         NoChoice { text: String } "'{text}' is not a choice.",
         NoneOf { text: String, keys: String } "'{text}' is none of {keys}.",
+        NoneOfNorNumber { text: String, keys: String } "'{text}' is none of {keys}, and no number.",
         NoWholeNumber { text: String } "'{text}' is not a whole number.",
         NoWholeNumberOf { text: String, unit: &'static str } "'{text}' is not a whole number of {unit}.",
         NoNumber { text: String } "'{text}' is not a number.",

@@ -140,8 +140,13 @@ pub trait Family: Sync {
         None
     }
 
-    /// The values that a setting is chosen from, where its row cannot list them.
-    fn choices(&self, _row: &Row, _subject: &Subject) -> Option<Vec<(SettingValue, String)>> {
+    /// The values that a setting is chosen from, where its row cannot list them or other settings say what they mean.
+    fn choices(
+        &self,
+        _row: &Row,
+        _subject: &Subject,
+        _wanted: Known<'_>,
+    ) -> Option<Vec<(SettingValue, String)>> {
         None
     }
 
@@ -205,8 +210,13 @@ pub trait Family: Sync {
         &words::USUAL
     }
 
-    /// The motors a controller has.
-    fn motors(&self) -> &'static [Motor];
+    /// The motors of a controller: of the one that is connected, else of most.
+    fn motors(&self, identity: Option<&Identity>) -> &'static [Motor] {
+        match identity {
+            Some(identity) if identity.capabilities().motors == 1 => &[Motor::M1],
+            Some(_) | None => &Motor::BOTH,
+        }
+    }
 
     /// Names of the input pins in the simulated world; empty where they are numbered.
     fn world_pins(&self) -> &'static [&'static str] {

@@ -12,6 +12,7 @@ use std::time::Duration;
 
 use brushwork_link::{ArmScope, ConnectTarget, Event, Identity, PollRate, SettingValue, SettingsImage};
 use brushwork_plant::world::{ScriptRun, WorldView};
+use brushwork_values::Motor;
 
 use super::drawer::Drawers;
 use super::generator::Generator;
@@ -190,6 +191,11 @@ impl Connection {
     /// The screens of that controller, in the order of the list.
     pub fn screens(&self) -> Vec<Screen> {
         self.family().screens(self.link.identity(), &|key| self.known(key))
+    }
+
+    /// The motors of that controller.
+    pub fn motors(&self) -> &'static [Motor] {
+        self.family().motors(self.link.identity())
     }
 
     /// A setting as the controller has it, as far as known.

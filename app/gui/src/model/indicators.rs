@@ -62,6 +62,7 @@ mod tests {
                 generation,
                 is_mcp: model.starts_with("MCP"),
                 is_node: false,
+                motors: 2,
             }),
             also_answers: Vec::new(),
             simulated: true,

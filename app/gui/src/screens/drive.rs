@@ -97,7 +97,7 @@ pub fn arm_ui(ui: &mut Ui, scope: ArmScope, link: &LinkView, family: &dyn Family
             ui.vertical(|ui| {
                 ui.label(match scope {
                     ArmScope::ClampTest => RISK_OF_RUN,
-                    _ if family.motors().len() == 1 => RISK_OF_ONE,
+                    _ if family.motors(link.identity()).len() == 1 => RISK_OF_ONE,
                     _ => RISK,
                 });
                 let color = palette.weak_text;
@@ -142,7 +142,7 @@ pub fn motor_ui(
     let mut held = None;
     let size = vec2(ui.available_width(), ROW_HEIGHT);
     ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
-        let is_only = model.front.family().motors().len() == 1;
+        let is_only = model.front.motors().len() == 1;
         let name = if is_only { "Motor".to_owned() } else { format!("Motor {}", motor.index() + 1) };
         let label = Label::new(name.as_str()).selectable(false);
         ui.add_sized(vec2(62.0, ROW_HEIGHT), label);
@@ -202,8 +202,11 @@ pub struct Output {
     pub width: f32,
 }
 
-/// The box that couples both sliders.
-pub fn sync_ui(ui: &mut Ui, setpoints: &mut Setpoints) {
+/// The box that couples both sliders, where there are two.
+pub fn sync_ui(ui: &mut Ui, motors: &[Motor], setpoints: &mut Setpoints) {
+    if motors.len() < 2 {
+        return;
+    }
     let mut sync = setpoints.sync;
     if ui.checkbox(&mut sync, "Sync motors").on_hover_text("Both sliders move together").changed() {
         setpoints.set_sync(sync);

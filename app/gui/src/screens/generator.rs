@@ -2,7 +2,6 @@
 
 use std::ops::RangeInclusive;
 
-use brushwork_values::Motor;
 use egui::{Button, ComboBox, Grid, Label, RichText, Ui, vec2};
 
 use super::progress::progress_ui;
@@ -50,8 +49,9 @@ pub fn generator_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 }
 
 fn profile_ui(ui: &mut Ui, model: &mut Model, mode: Mode) {
+    let motors = model.front.motors();
     let generator = &mut model.front.generator;
-    for motor in Motor::BOTH {
+    for motor in motors {
         let hint = "Whether this motor plays the profile";
         ui.checkbox(&mut generator.motors[motor.index()], motor.to_string()).on_hover_text(hint);
     }

@@ -18,6 +18,7 @@ pub fn loops_ui(ui: &mut Ui, model: &mut Model, columns: &'static [Column], comm
     let palette = Palette::of(ui);
     let is_free = !model.front.is_guided();
     let is_busy = model.front.settings.is_busy();
+    let motors = model.front.motors();
     let loops = &mut model.front.loops;
     let Some(unit) = model.front.settings.unit_mut() else { return };
     let mut is_edited = false;
@@ -27,8 +28,8 @@ pub fn loops_ui(ui: &mut Ui, model: &mut Model, columns: &'static [Column], comm
             ui.label(RichText::new(column.label).small().weak());
         }
         ui.end_row();
-        for motor in Motor::BOTH {
-            is_edited |= motor_row_ui(ui, unit, motor, columns);
+        for motor in motors {
+            is_edited |= motor_row_ui(ui, unit, *motor, columns);
             ui.end_row();
         }
     });
@@ -36,7 +37,7 @@ pub fn loops_ui(ui: &mut Ui, model: &mut Model, columns: &'static [Column], comm
         loops.note_edit();
     }
     ui.add_space(2.0);
-    ui.horizontal_wrapped(|ui| buttons_ui(ui, (loops, unit), columns, (is_free, is_busy), commands));
+    ui.horizontal_wrapped(|ui| buttons_ui(ui, (loops, unit, motors), columns, (is_free, is_busy), commands));
     for motor in torque_controlled(unit, columns) {
         let text = format!(
             "Motor {}: with L and R both other than 0 the controller switches from duty to current (torque) \
@@ -107,7 +108,7 @@ fn decimals_of(text: &str, kind: Kind, value: SettingValue) -> usize {
 
 fn buttons_ui(
     ui: &mut Ui,
-    (loops, unit): (&mut LoopView, &mut UnitSettings),
+    (loops, unit, motors): (&mut LoopView, &mut UnitSettings, &[Motor]),
     columns: &'static [Column],
     (is_free, is_busy): (bool, bool),
     commands: &mut Commands,
@@ -129,7 +130,8 @@ fn buttons_ui(
         commands.push(Command::ReadLoops);
     }
     ui.separator();
-    for (from, label) in [(Motor::M1, "Copy M1 to M2"), (Motor::M2, "Copy M2 to M1")] {
+    let copies = [(Motor::M1, "Copy M1 to M2"), (Motor::M2, "Copy M2 to M1")];
+    for (from, label) in copies.into_iter().filter(|_| motors.len() > 1) {
         if ui.add_enabled(is_ready, Button::new(label)).clicked() {
             unit.copy_from(from, columns);
             loops.note_edit();

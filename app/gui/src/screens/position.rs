@@ -31,14 +31,18 @@ pub fn position_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 }
 
 fn controls_ui(ui: &mut Ui, model: &mut Model) {
-    for motor in Motor::BOTH {
+    for motor in model.front.motors().iter().copied() {
         let held = motor_ui(ui, model, motor, &OUTPUT, |ui, model| slider_ui(ui, model, motor));
         jog(&mut model.front, motor, held);
     }
+    let has_two = model.front.motors().len() > 1;
     options_ui(ui, |ui| {
         let position = &mut model.front.position;
         // Coupling alone moves nothing: the motors may have different travels.
-        ui.checkbox(&mut position.setpoints.sync, "Sync motors").on_hover_text("Both sliders move together");
+        if has_two {
+            ui.checkbox(&mut position.setpoints.sync, "Sync motors")
+                .on_hover_text("Both sliders move together");
+        }
         on_release_ui(ui, &mut position.setpoints);
         ui.separator();
         for (label, name, unit, hint, value) in [

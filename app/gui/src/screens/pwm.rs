@@ -30,13 +30,14 @@ pub fn pwm_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 }
 
 fn controls_ui(ui: &mut Ui, model: &mut Model) {
-    for motor in Motor::BOTH {
+    for motor in model.front.motors().iter().copied() {
         let held = motor_ui(ui, model, motor, &OUTPUT, |ui, model| duty_ui(ui, model, motor));
         model.front.pwm.jog(motor, held);
     }
+    let motors = model.front.motors();
     options_ui(ui, |ui| {
         let pwm = &mut model.front.pwm;
-        sync_ui(ui, &mut pwm.setpoints);
+        sync_ui(ui, motors, &mut pwm.setpoints);
         on_release_ui(ui, &mut pwm.setpoints);
         ui.separator();
         let field =

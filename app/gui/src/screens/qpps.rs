@@ -1,6 +1,5 @@
 //! The guided measurement of QPPS (MCP manual 2.4.5): what it will do, its limits, how far it is, what it found.
 
-use brushwork_values::Motor;
 use egui::{Button, Label, RichText, Ui};
 
 use super::progress::progress_ui;
@@ -38,9 +37,10 @@ pub fn qpps_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 }
 
 fn task_ui(ui: &mut Ui, model: &mut Model) {
+    let motors = model.front.motors();
     let panel = &mut model.front.qpps;
-    for motor in Motor::BOTH {
-        ui.radio_value(&mut panel.motor, motor, motor.to_string());
+    for motor in motors {
+        ui.radio_value(&mut panel.motor, *motor, motor.to_string());
     }
     ui.separator();
     ui.label("Travel up to");

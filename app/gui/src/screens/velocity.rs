@@ -31,14 +31,15 @@ pub fn velocity_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 }
 
 fn controls_ui(ui: &mut Ui, model: &mut Model) {
-    for motor in Motor::BOTH {
+    for motor in model.front.motors().iter().copied() {
         let held = motor_ui(ui, model, motor, &OUTPUT, |ui, model| speed_ui(ui, model, motor));
         let qpps = model.front.top_speeds();
         model.front.velocity.jog(motor, held, qpps);
     }
+    let motors = model.front.motors();
     options_ui(ui, |ui| {
         let velocity = &mut model.front.velocity;
-        sync_ui(ui, &mut velocity.setpoints);
+        sync_ui(ui, motors, &mut velocity.setpoints);
         on_release_ui(ui, &mut velocity.setpoints);
         ui.separator();
         let field =

@@ -67,7 +67,9 @@ impl Figures {
 fn block_ui(ui: &mut Ui, block: &Figures, model: &Model, commands: &mut Commands) {
     ui.vertical(|ui| {
         ui.spacing_mut().item_spacing = vec2(GAP, 2.0);
-        for figure in block.rows {
+        let motors = model.front.motors();
+        let is_there = |figure: &&Figure| figure.channel.motor.is_none_or(|motor| motors.contains(&motor));
+        for figure in block.rows.iter().filter(is_there) {
             ui.horizontal(|ui| {
                 fixed_label_ui(ui, figure.label, block.label_width);
                 let value = model.front.link.readings.text(figure.channel);

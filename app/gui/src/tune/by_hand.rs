@@ -47,11 +47,12 @@ pub fn by_hand_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 fn head_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands) {
     let _palette = Palette::of(ui);
     let poll = model.front.poll;
+    let motors = model.front.motors();
     let calibration = model.front.tune.calibration_mut(which);
     ui.horizontal_wrapped(|ui| {
-        for motor in Motor::BOTH {
-            if ui.radio(calibration.motor == motor, motor.to_string()).clicked() {
-                calibration.look_at(motor);
+        for motor in motors {
+            if ui.radio(calibration.motor == *motor, motor.to_string()).clicked() {
+                calibration.look_at(*motor);
             }
         }
         ui.separator();

@@ -32,7 +32,7 @@ pub fn setup_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Comm
     let is_free = !model.front.is_guided();
     let can_start = is_armed && is_free;
     let is_wide = ui.available_width() >= WITH_WORDS;
-    let motors = model.front.family().motors();
+    let motors = model.front.motors();
     if ui.available_width() >= BOTH_IN_A_ROW {
         ui.horizontal(|ui| {
             for motor in motors {

@@ -18,7 +18,7 @@ pub fn world_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let Some(views) = model.front.worlds.clone() else { return };
     let Some(view) = views.get(model.front.world_unit) else { return };
     model.front.world.sync(view);
-    let family = model.front.family();
+    let (family, motors) = (model.front.family(), model.front.motors());
     let panel = &mut model.front.world;
     let mut actions = Vec::new();
     ui.spacing_mut().item_spacing.y = 4.0;
@@ -30,10 +30,10 @@ pub fn world_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     if family.lacks(Ability::BridgeFaults).is_none() {
         electronics_ui(ui, view, &mut actions);
     }
-    for motor in family.motors() {
+    for motor in motors {
         motor::motor_ui(ui, *motor, view, panel, &mut actions);
     }
-    pins::pins_ui(ui, view, family, &mut actions);
+    pins::pins_ui(ui, view, (family, motors), &mut actions);
     switches::switches_ui(ui, view, &mut actions);
     if family.lacks(Ability::Buses).is_none() {
         buses::buses_ui(ui, view, &mut actions);

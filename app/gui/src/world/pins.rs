@@ -9,7 +9,12 @@ use super::{Actions, number};
 use crate::family::Family;
 use crate::widgets::{fixed_label_ui, heading_ui};
 
-pub fn pins_ui(ui: &mut Ui, view: &WorldView, family: &dyn Family, actions: &mut Actions) {
+pub fn pins_ui(
+    ui: &mut Ui,
+    view: &WorldView,
+    (family, motors): (&dyn Family, &[Motor]),
+    actions: &mut Actions,
+) {
     let names = family.world_pins();
     ui.separator();
     heading_ui(ui, "Input pins");
@@ -18,7 +23,7 @@ pub fn pins_ui(ui: &mut Ui, view: &WorldView, family: &dyn Family, actions: &mut
         ui.push_id(pin, |ui| {
             ui.horizontal(|ui| {
                 fixed_label_ui(ui, &label, if names.is_empty() { 44.0 } else { 84.0 });
-                pin_ui(ui, (pin, &label), *signal, view, family.motors(), actions);
+                pin_ui(ui, (pin, &label), *signal, view, motors, actions);
             })
         });
     }

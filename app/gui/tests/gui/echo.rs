@@ -56,7 +56,7 @@ impl WindowFamily for EchoWindow {
         &[IndicatorInfo { short: "HOT", title: "Too hot" }]
     }
 
-    fn motors(&self) -> &'static [Motor] {
+    fn motors(&self, _: Option<&Identity>) -> &'static [Motor] {
         &[Motor::M1]
     }
 

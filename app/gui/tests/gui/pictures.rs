@@ -51,6 +51,7 @@ fn fed(model: &mut Model, word: u32) {
             generation: Generation::Gen1,
             is_mcp: true,
             is_node: false,
+            motors: 2,
         }),
         also_answers: vec![0x81],
         simulated: true,

@@ -125,7 +125,7 @@ fn the_leds_are_shown_as_the_simulated_controller_lights_them_and_in_words() {
 
 #[test]
 fn a_driver_fault_of_a_roboclaw_lights_its_indicator_and_disarms() {
-    let model = models::lookup("roboclaw").expect("it is in the list");
+    let model = models::lookup("roboclaw-2x30a").expect("it is in the list");
     let config = ControllerConfig { generation: Generation::Gen4, ..ControllerConfig::of(model) };
     let mut bench = Bench::of(Controller::new(config).expect("the default world is sound"));
     bench.connect();

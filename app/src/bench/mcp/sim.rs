@@ -112,7 +112,7 @@ fn times_real_time(bus: &mut Bus, round: Duration) -> Result<f64, String> {
 fn bus_of(preset: &Preset) -> Result<Bus, String> {
     let unit = |config| Controller::new(config).map_err(|error| format!("{}: {error}", preset.key));
     let config = ControllerConfig::default();
-    let pins = config.model.pins.len();
+    let pins = config.model.wired_pins();
     let config = ControllerConfig { world: presets::world_of(preset, preset, pins), ..config };
     let mut settings = unit(config.clone())?.settings();
     for motor in &mut settings.motors {

@@ -19,7 +19,8 @@ pub enum Kind {
         /// Decimals shown at least.
         decimals: usize,
     },
-    /// One of a list of named values. Other numbers are kept as they are read; nobody may choose them.
+    /// One of a list of named values. Other numbers are kept as they are read; nobody may choose them but where the row has a range
+    /// of them.
     Choice(&'static [Code]),
 }
 

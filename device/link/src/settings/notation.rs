@@ -12,6 +12,8 @@ pub(super) struct Notation {
     pub(super) kind: Kind,
     pub(super) coding: Coding,
     pub(super) unit: Unit,
+    /// Whether a choice takes numbers without a name.
+    pub(super) is_open: bool,
 }
 
 impl Notation {
@@ -38,6 +40,7 @@ impl Notation {
                 self.shortest(number)
             }
             SettingValue::Choice(key) => self.label(key).to_owned(),
+            SettingValue::UnknownCode(raw) if self.is_open => raw.to_string(),
             SettingValue::UnknownCode(raw) => format!("unknown ({raw})"),
         }
     }
@@ -81,9 +84,18 @@ impl Notation {
             let raw = parse_whole(text)?;
             codes.iter().find(|code| code.raw == raw)
         };
-        named.or_else(numbered).map(|code| SettingValue::Choice(code.key)).ok_or_else(|| {
-            let keys: Vec<&str> = codes.iter().map(|code| code.key).collect();
-            ValueMessage::NoneOf { text: text.to_owned(), keys: keys.join(", ") }.into()
+        if let Some(code) = named.or_else(numbered) {
+            return Ok(SettingValue::Choice(code.key));
+        }
+        if let Some(raw) = parse_whole(text).filter(|_| self.is_open) {
+            return Ok(SettingValue::UnknownCode(raw));
+        }
+        let (text, keys) =
+            (text.to_owned(), codes.iter().map(|code| code.key).collect::<Vec<_>>().join(", "));
+        Err(if self.is_open {
+            ValueMessage::NoneOfNorNumber { text, keys }.into()
+        } else {
+            ValueMessage::NoneOf { text, keys }.into()
         })
     }
 

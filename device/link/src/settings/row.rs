@@ -31,7 +31,8 @@ pub struct Row {
     pub unit: Unit,
     /// How the value stands in its wire field.
     pub coding: Coding,
-    /// The lowest and highest value allowed. Unbounded for yes or no and for choices.
+    /// The lowest and highest value allowed. Unbounded for yes or no and for choices, but for a choice that takes other numbers
+    /// than those of its names.
     pub range: Range,
     /// The value after "restore defaults".
     pub default: SettingValue,
@@ -297,6 +298,9 @@ impl Row {
     pub fn check(&self, value: SettingValue) -> Result<(), Message> {
         let title = self.title();
         if let SettingValue::UnknownCode(raw) = value {
+            if self.takes_number(raw) {
+                return Ok(());
+            }
             return Err(ValueMessage::UnknownCode { title, raw }.into());
         }
         if self.coding.encode(self.kind, value).is_none() {
@@ -312,6 +316,11 @@ impl Row {
             (_, Side::Below) => ValueMessage::BelowLowest { title, value, bound },
         }
         .into())
+    }
+
+    /// Whether a number that none of its names stands for may be chosen.
+    fn takes_number(&self, raw: i64) -> bool {
+        self.notation().is_open && (self.range.min..=self.range.max).contains(&(raw as f64))
     }
 
     /// What to know before a value that a unit held once is written as it was: that it is out of range, or a number without a
@@ -388,7 +397,7 @@ impl Row {
 
     /// The row's range as text: "10.0 V to 60.0 V"; empty for yes or no and for choices.
     pub fn range_text(&self) -> String {
-        if self.range.bound == Bound::Unbounded {
+        if self.range.bound == Bound::Unbounded || self.notation().is_open {
             return String::new();
         }
         let (min, max) = (self.numeric(self.range.min), self.numeric(self.range.max));
@@ -396,7 +405,8 @@ impl Row {
     }
 
     pub(super) fn notation(&self) -> Notation {
-        Notation { kind: self.kind, coding: self.coding, unit: self.unit }
+        let is_open = matches!(self.kind, Kind::Choice(_)) && self.range.bound != Bound::Unbounded;
+        Notation { kind: self.kind, coding: self.coding, unit: self.unit, is_open }
     }
 
     fn crossed_bound(&self, value: SettingValue) -> Option<(Side, f64)> {

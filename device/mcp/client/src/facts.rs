@@ -15,6 +15,8 @@ pub struct McpFacts {
     pub is_mcp: bool,
     /// Whether it is a node of a CAN bus.
     pub is_node: bool,
+    /// Motors it drives, 1 or 2.
+    pub motors: u8,
 }
 
 /// MCP and RoboClaw. What differs between those two, their models and generations tell.
@@ -37,7 +39,7 @@ const CAPABILITIES: Capabilities = Capabilities {
 
 impl UnitFacts for McpFacts {
     fn capabilities(&self) -> Capabilities {
-        CAPABILITIES
+        Capabilities { motors: self.motors, ..CAPABILITIES }
     }
 
     fn channels(&self) -> &'static [Channel] {

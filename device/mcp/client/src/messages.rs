@@ -13,7 +13,7 @@ messages! {
         NoCommand { command: u8 } "This firmware has no command {command}.",
         NoAddress { address: UnitAddress } "{address} is no address of packet serial",
         AddressWithMixing { address: String } "Mixing is written together with the address, which this firmware does not report: {address} is written, the address this link speaks to. Over USB a unit answers to every address, so check it first.",
-        ConfigurationWord "The configuration word takes effect at once and can move the controller to another address, baud rate or control mode: the link may be lost.",
+        ConfigurationWord "The configuration word moves the controller to another address at once, and to another baud rate or control mode with the next power up: the link may be lost then.",
         OwnPortChanges { stream: Stream, to: String } "This program is connected through {stream}, which becomes \"{to}\": the link is lost then.",
         OwnPortRate { stream: Stream, to: String } "This program is connected through {stream}, which changes to {to}: connect again at that rate.",
         OwnPortTimeout { stream: Stream } "{stream} has no time-out then: the motors would go on if this program died, so it cannot be armed.",
@@ -57,6 +57,26 @@ messages! {
         NoDeadband "The input has no deadband, so that a stick that is not quite at its center can move a motor.",
         OtherInputRange "The input reaches its ends at other places.",
         OtherEncoder "Which encoder the motor has, and which way it counts, is set otherwise there: try it before a loop is closed.",
+    }
+}
+
+messages! {
+    /// What is odd about a RoboClaw's settings together, and what they let happen.
+    pub enum RoboClawMessage {
+        OwnLimitsOverruled { how: String } "The battery cut-off is {how}, so the main battery minimum and maximum have no effect. Choose user limits to set them yourself.",
+        NeverHomes { motor: usize, missing: &'static str } "Motor {motor} is to look for its home switch at power up and never does: its {missing}. Set it.",
+        NoInputRange { input: String, min: i64, center: i64, max: i64 } "{input} gives no usable command: its center {center} is not between its minimum {min} and its maximum {max}.",
+        BytesCommand "From the next power up single bytes on S1 command the motors, and packet serial goes on over USB alone.",
+        InputsCommand { signal: &'static str, options: &'static str, switches: &'static str } "From the next power up {signal} on S1 and S2 command the motors, packet serial goes on over USB alone, and baud rate and address are read as R/C options and switches: {options}; {switches}.",
+        RunsOn "With MCU and without the R/C time-out the motors go on with the last pulse when the pulses stop.",
+        Homes { motor: usize, timeout_s: f64 } "Motor {motor} moves by itself at each power up: forward off its home switch for at most 3 s, then backward until it meets it, for at most {timeout_s:.1} s.",
+        TurnedRound { what: Message } "{what}: if they do not go the same way then, a closed loop runs away. Try it with little current.",
+        BothTurned { motor: usize } "Motor {motor} and its encoder are both turned round",
+        MotorTurned { motor: usize } "Motor {motor} is turned round and its encoder is not",
+        EncoderTurned { motor: usize } "The encoder of motor {motor} is turned round and the motor is not",
+        NoneTurned { motor: usize } "Motor {motor} and its encoder go the way they are wired",
+        OneMotor { model: &'static str } "a {model} has one motor, motor 1",
+        EncodersSwapped "The motors change their encoders: with loops closed and wires as they are, both run away.",
     }
 }
 

@@ -14,7 +14,7 @@ pub fn config_of(unit: &UnitSpec, seed: u64) -> ControllerConfig {
     let mut config = ControllerConfig {
         generation: unit.generation,
         address: unit.address,
-        world: presets::world_of(preset(0), preset(1), unit.model.pins.len()),
+        world: presets::world_of(preset(0), preset(1), unit.model.wired_pins()),
         seed,
         ..ControllerConfig::of(unit.model)
     };

@@ -13,4 +13,5 @@ pub mod crc;
 pub mod loader;
 pub mod models;
 pub mod packet_serial;
+pub mod roboclaw;
 pub mod script_image;

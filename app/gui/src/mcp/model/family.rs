@@ -2,7 +2,7 @@
 
 use brushwork_link::FamilyRef;
 use brushwork_link::device::{ArmScope, Channel, Drive, Identity, Job, PinSignal, StatusReport};
-use brushwork_link::settings::{Group, Row, SettingValue, SettingsImage, SettingsTable, Subject};
+use brushwork_link::settings::{Group, Kind, Row, SettingValue, SettingsImage, SettingsTable, Subject};
 use brushwork_mcp_client::channels::CHANNELS;
 use brushwork_mcp_client::indicators::{conditions, indicators};
 use brushwork_mcp_client::script::MIN_AUTORUN;
@@ -13,7 +13,7 @@ use brushwork_mcp_wire::models::{self, MODELS};
 use brushwork_mcp_wire::packet_serial::status::{Condition, Conditions, StatusIndicator};
 use brushwork_mcp_wire::packet_serial::{Effect, Generation, lookup, number};
 use brushwork_tuning::tune::Method;
-use brushwork_values::Motor;
+use brushwork_values::{Code, Motor};
 
 use super::diagnosis::ends;
 use super::{McpConnection, script};
@@ -148,8 +148,17 @@ impl Family for Mcp {
     }
 
     /// The row that names a motor's encoder by the number of its pin: none, and every pin that can be an encoder, by the numbers that we
-    /// assume for them.
-    fn choices(&self, row: &Row, subject: &Subject) -> Option<Vec<(SettingValue, String)>> {
+    /// assume for them. Bits of a configuration word that mean one thing in the serial modes and another with R/C or analog inputs: by
+    /// the control mode.
+    fn choices(
+        &self,
+        row: &Row,
+        subject: &Subject,
+        wanted: Known<'_>,
+    ) -> Option<Vec<(SettingValue, String)>> {
+        if matches!(row.pattern, "roboclaw.config.baud" | "roboclaw.config.address") {
+            return of_mode(row, wanted("roboclaw.config.mode")?.choice()?);
+        }
         if row.pattern != "motor{n}.encoder.pin" {
             return None;
         }
@@ -196,10 +205,6 @@ impl Family for Mcp {
         listed().filter(|(key, _)| is_first(key)).chain(listed().filter(|(key, _)| !is_first(key))).collect()
     }
 
-    fn motors(&self) -> &'static [Motor] {
-        &Motor::BOTH
-    }
-
     fn methods(&self, which: Loop) -> &'static [Method] {
         match which {
             Loop::Velocity => &[Method::Velocity],
@@ -239,6 +244,23 @@ pub const HELP_COMMANDS: HelpPage =
     HelpPage { title: "Packet Serial Reference", group: 1, is_searched: true };
 /// The language of its scripts.
 pub const HELP_MCL: HelpPage = HelpPage { title: "MCL Reference", group: 1, is_searched: true };
+
+/// What the values of a row mean in a control mode: the part of their labels before or behind the word for the other modes.
+fn of_mode(row: &Row, mode: &str) -> Option<Vec<(SettingValue, String)>> {
+    let Kind::Choice(codes) = row.kind else { return None };
+    let is_serial = matches!(mode, "simple_serial" | "packet_serial");
+    let label = |code: &Code| {
+        let (serial, inputs) = code.label.split_once("; R/C: ").unwrap_or((code.label, "no switch"));
+        let mut words = (if is_serial { serial } else { inputs }).to_owned();
+        // Address numbers of four and more differ from the others in serial modes alone.
+        if !is_serial && code.raw > 3 && row.pattern.ends_with("address") {
+            words.push_str(" (and bit 10)");
+        }
+        words[..1].make_ascii_uppercase();
+        words
+    };
+    Some(codes.iter().map(|code| (SettingValue::Choice(code.key), label(code))).collect())
+}
 
 /// An indicator as a unit's status lights it; those for home and limit switches of an MCP as its pins do.
 #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]

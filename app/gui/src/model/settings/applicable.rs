@@ -9,6 +9,37 @@ pub(super) fn why_not(row: &Row, wanted: impl Fn(&str) -> Option<SettingValue>) 
         Group::PINS => pin(row, wanted),
         Group::STREAMS => stream(row, wanted),
         Group::BUSES => bus(row, wanted),
+        _ => control(row, wanted),
+    }
+}
+
+/// What depends on the control mode of a board that has one.
+fn control(row: &Row, wanted: impl Fn(&str) -> Option<SettingValue>) -> Option<&'static str> {
+    let mode = choice(wanted("roboclaw.config.mode"));
+    let has_inputs = mode.is_none_or(|mode| matches!(mode, "rc" | "analog"));
+    let has_packets = mode.is_none_or(|mode| mode == "packet_serial");
+    let is_simple = mode.is_none_or(|mode| mode == "simple_serial");
+    let of_inputs = |suffix| row.key.starts_with("roboclaw.") && row.key.ends_with(suffix);
+    let is_of_inputs = of_inputs("deadband.reverse")
+        || of_inputs("deadband.forward")
+        || row.key.starts_with("roboclaw.s1.")
+        || row.key.starts_with("roboclaw.s2.")
+        || row.key.ends_with(".encoder.in_rc");
+    match row.key.as_str() {
+        _ if is_of_inputs && !has_inputs => {
+            Some("Not applicable: the control mode is serial. It is for R/C and analog inputs.")
+        }
+        "roboclaw.config.bit_11" if !is_simple => {
+            Some("Not applicable: it is for the control mode simple serial.")
+        }
+        "roboclaw.config.slave_select" | "roboclaw.config.open_drain" if !has_packets => {
+            Some("Not applicable: it is for the control mode packet serial.")
+        }
+        "limits.main_battery.min_volts" | "limits.main_battery.max_volts"
+            if choice(wanted("roboclaw.config.battery")).is_some_and(|battery| battery != "user") =>
+        {
+            Some("Not applicable: the battery cut-off sets it by a number of cells.")
+        }
         _ => None,
     }
 }

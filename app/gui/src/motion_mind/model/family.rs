@@ -91,7 +91,7 @@ impl Family for MotionMind {
         &words::WORDS
     }
 
-    fn motors(&self) -> &'static [Motor] {
+    fn motors(&self, _identity: Option<&Identity>) -> &'static [Motor] {
         &[Motor::M1]
     }
 

@@ -15,7 +15,7 @@ const LIST_WIDTH: f32 = 164.0;
 /// Draws the field; true when it has the keyboard.
 pub fn editor_ui(ui: &mut Ui, unit: &mut UnitSettings, row: &Row) -> bool {
     let subject = *unit.table().subject();
-    let own = family::of(subject.family()).choices(row, &subject);
+    let own = family::of(subject.family()).choices(row, &subject, &|key| unit.wanted(key));
     let response = match (row.kind, unit.wanted(&row.key)) {
         (_, value) if own.is_some() => {
             let named: Vec<_> = own.iter().flatten().map(|(value, name)| (*value, name.as_str())).collect();

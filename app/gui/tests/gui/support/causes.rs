@@ -52,7 +52,7 @@ fn of_roboclaw(
     says: [&'static str; 2],
 ) -> Cause {
     let actions = vec![WorldAction::SetUnitFault { fault, on: true }];
-    Cause { model: "roboclaw", generation, ..of_machine(name, actions, says) }
+    Cause { model: "roboclaw-2x30a", generation, ..of_machine(name, actions, says) }
 }
 
 /// All causes.

@@ -333,6 +333,8 @@ fn read_value(row: &Row, value: Option<&Node>) -> Result<SettingValue, ProfileMe
                 Err(ProfileMessage::NoneOf { text: quote(key), keys: keys.join(", ") })
             }
         },
+        // What had no names when the profile was written.
+        (Kind::Choice(_), Some(Node::Int(raw))) => Ok(row.decode(*raw)),
         (Kind::Bool, other) => Err(expected("true or false", other)),
         (Kind::Int, other) => Err(expected("a whole number", other)),
         (Kind::Fixed { .. }, other) => Err(expected("a number", other)),

@@ -240,6 +240,7 @@ fn finish(
     }
     let is_mcp = model.is_some_and(|model| model.name.starts_with("MCP"));
     let is_node = matches!(speaker.wire, Wire::Objects(_));
+    let motors = if model.is_some_and(|model| model.motors == 1) { 1 } else { 2 };
     let identity = Identity {
         address: speaker.id(),
         family: MCP,
@@ -248,7 +249,7 @@ fn finish(
         model: model.map(|model| model.name),
         firmware: firmware_of(version).to_owned(),
         generation: generation_number(speaker.generation),
-        facts: Facts::new(McpFacts { generation: speaker.generation, is_mcp, is_node }),
+        facts: Facts::new(McpFacts { generation: speaker.generation, is_mcp, is_node, motors }),
         also_answers: Vec::new(),
         simulated,
         port: line.exchange().port(),

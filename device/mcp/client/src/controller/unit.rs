@@ -5,7 +5,7 @@ use crate::controller::driving::packets;
 use crate::controller::speaker::{Speaker, Wire};
 use crate::controller::traffic::{describe_received, describe_sent};
 use crate::controller::{arming, inquiry, polling, stopping};
-use crate::messages::{McpCauseMessage, McpDriverMessage};
+use crate::messages::{McpCauseMessage, McpDriverMessage, RoboClawMessage};
 use brushwork_canopen::bus::Monitor;
 use brushwork_link::Message;
 use brushwork_link::device::Described;
@@ -58,6 +58,9 @@ impl Controller for Mcp {
     }
 
     fn drive(&mut self, line: &mut Line<'_>, drive: &Drive) -> Result<(), ExchangeError> {
+        if let (Some(model), Some(_)) = (self.model.filter(|model| model.motors == 1), drive.m2) {
+            return Err(ExchangeError::impossible(RoboClawMessage::OneMotor { model: model.name }));
+        }
         for (command, values) in packets(drive)? {
             self.transact(line, command, values.into_iter().map(Value::Int).collect())?;
         }

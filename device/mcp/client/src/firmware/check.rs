@@ -94,6 +94,7 @@ mod tests {
                 generation: Generation::Gen1,
                 is_mcp: true,
                 is_node: false,
+                motors: 2,
             }),
             also_answers: Vec::new(),
             simulated,

@@ -6,6 +6,8 @@ use brushwork_link::settings::SettingValue;
 use brushwork_link::settings::SettingsImage;
 use brushwork_link::settings::SettingsTable;
 
+use super::roboclaw;
+
 /// Rows of which the first must not be above the second.
 pub(super) const ORDERED_PAIRS: &[(&str, &str)] = &[
     ("limits.main_battery.min_volts", "limits.main_battery.max_volts"),
@@ -35,6 +37,7 @@ pub(super) fn dangers(table: &SettingsTable, after: &SettingsImage, changes: &Se
     dangers.extend(arming_obstacle(after, changes));
     dangers.extend(torque_control(table, after, changes));
     dangers.extend(bridging(changes).map(Message::from));
+    dangers.extend(roboclaw::dangers(after, changes));
     dangers
 }
 

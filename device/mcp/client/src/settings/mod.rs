@@ -7,6 +7,7 @@ mod memory;
 mod pins;
 mod plan;
 mod reference;
+mod roboclaw;
 pub(crate) mod rows;
 mod template;
 
@@ -29,7 +30,6 @@ use brushwork_link::wire::Wire;
 use brushwork_link::{Failure, Message};
 use brushwork_mcp_wire::codes::ENCODER_PIN_NONE;
 use brushwork_mcp_wire::models::Family;
-use brushwork_mcp_wire::packet_serial::name::{ADDRESS, Name};
 use brushwork_mcp_wire::packet_serial::{lookup, number};
 use brushwork_values::Values;
 
@@ -119,8 +119,7 @@ impl FamilySettings for McpSettings {
     }
 
     fn new_address(&self, step: &Step) -> Option<u8> {
-        let given = step.arguments.iter().find(|(name, _)| *name == ADDRESS::TEXT)?;
-        u8::try_from(given.1).ok()
+        plan::new_address(step)
     }
 
     fn save(

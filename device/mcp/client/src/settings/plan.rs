@@ -10,8 +10,9 @@ use brushwork_link::settings::{
 };
 use brushwork_link::transport::Stream;
 use brushwork_link::unit::{FirmwareGeneration, UnitAddress};
-use brushwork_mcp_wire::packet_serial::name::{INDEX, Name};
-use brushwork_mcp_wire::packet_serial::{Request, describe_request, lookup, number};
+use brushwork_mcp_wire::packet_serial::name::{ADDRESS, CONFIG, INDEX, Name};
+use brushwork_mcp_wire::packet_serial::{Address, Request, describe_request, lookup, number};
+use brushwork_mcp_wire::roboclaw::ConfigWord;
 
 /// What the command of these rows takes: its fields in wire order, without keys that never change.
 pub fn arguments(planned: &Planned<'_>) -> Result<Vec<Argument>, Message> {
@@ -26,6 +27,19 @@ pub fn arguments(planned: &Planned<'_>) -> Result<Vec<Argument>, Message> {
     Ok(fields.map(|field| argument(field.name)).collect())
 }
 
+/// The row of the address in the configuration word.
+const CONFIG_ADDRESS: &str = "roboclaw.config.address";
+
+/// Where a unit answers once it has taken the step, if that moves it.
+pub fn new_address(step: &Step) -> Option<u8> {
+    let given = |name: &str| step.arguments.iter().find(|(field, _)| *field == name).map(|(_, raw)| *raw);
+    if let Some(address) = given(ADDRESS::TEXT) {
+        return u8::try_from(address).ok();
+    }
+    let word = ConfigWord(u16::try_from(given(CONFIG::TEXT)?).ok()?);
+    Some(Address::FIRST.get() + word.address_number()?)
+}
+
 /// When a command is sent: limits before what they limit, what could cut this link off last.
 pub fn stage(planned: &Planned<'_>) -> Stage {
     let (index, changed) = (planned.index, planned.changed);
@@ -33,6 +47,8 @@ pub fn stage(planned: &Planned<'_>) -> Stage {
     match planned.command {
         number::SET_ADDRESS_MIXED if changed.iter().any(|row| row.key == "unit.address") => Stage::Address,
         number::SET_STREAM if planned.context.options.own_stream.is_some_and(own) => Stage::OwnPort,
+        // An address moves at once, the rest with the next power up.
+        number::SET_CONFIG if changed.iter().any(|row| row.key == CONFIG_ADDRESS) => Stage::Address,
         number::SET_CONFIG => Stage::OwnPort,
         number::SET_MAIN_VOLTAGES
         | number::SET_LOGIC_VOLTAGES

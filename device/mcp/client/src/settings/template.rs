@@ -6,6 +6,7 @@
 use brushwork_mcp_wire::codes;
 use brushwork_mcp_wire::models::{Family, Model, Pin};
 use brushwork_mcp_wire::packet_serial::{Generation, Part, has_number};
+use brushwork_mcp_wire::roboclaw::ControlPin;
 use brushwork_values::Code;
 use brushwork_values::Unit as Measure;
 
@@ -115,6 +116,12 @@ impl Template {
         self
     }
 
+    /// A choice that takes other numbers too, since not all of its values have a public name.
+    pub(crate) const fn open_choice(mut self, codes: &'static [Code], numbers: Limits) -> Self {
+        self.range = numbers;
+        self.choice(codes)
+    }
+
     /// A default that the manual states.
     pub(crate) const fn default(mut self, value: DefaultValue) -> Self {
         self.default = Default { value, assumed: false };
@@ -210,6 +217,10 @@ pub(crate) enum DefaultValue {
     Bool(bool),
     Int(i64),
     Number(f64),
+    /// The number, or the end of the model's range that it lies beyond.
+    WithinRange(f64),
+    /// Whatever the number on the wire stands for.
+    Raw(i64),
     Key(&'static str),
     /// One key per instance.
     Keys(&'static [&'static str]),
@@ -458,18 +469,25 @@ impl Template {
         };
         match self.repeat {
             Repeat::Once => vec![(0, String::new(), None)],
-            Repeat::Motors => numbered(2, &|index| format!("Motor {}", index + 1)),
+            Repeat::Motors => numbered(subject.model.motors, &|index| format!("Motor {}", index + 1)),
             Repeat::Levels => numbered(3, &|index| format!("Priority level {}", index + 1)),
             Repeat::Pins => numbered(subject.pins, &|index| subject.pin_name(index)),
             Repeat::Douts => numbered(subject.douts, &|index| format!("DOUT{}", index + 1)),
-            Repeat::Ctrls => numbered(2, &|index| format!("CTRL{}", index + 1)),
+            Repeat::Ctrls => numbered(subject.model.control_outputs, &|index| format!("CTRL{}", index + 1)),
             Repeat::Streams => named(&streams(0, subject.streams)),
             Repeat::TtlStreams => named(&streams(2, subject.streams)),
             Repeat::RoboClawInputs => named(&[(0, "s1", "S1"), (1, "s2", "S2")]),
-            Repeat::RoboClawPins if layout_of(subject.generation) < Generation::Gen4 => {
-                named(&ROBOCLAW_PINS[..3])
+            Repeat::RoboClawPins => {
+                let has_outputs =
+                    layout_of(subject.generation) == Generation::Gen4 && subject.model.control_outputs > 0;
+                let is_there = |name: &str| match name {
+                    "D1" | "D2" => has_outputs,
+                    input => subject.model.control_pins.contains(&input),
+                };
+                let there: Vec<_> =
+                    ROBOCLAW_PINS.iter().copied().filter(|(_, _, name)| is_there(name)).collect();
+                named(&there)
             }
-            Repeat::RoboClawPins => named(ROBOCLAW_PINS),
         }
     }
 
@@ -480,7 +498,12 @@ impl Template {
         (index, number, instance): (usize, String, Option<Instance>),
     ) -> Row {
         let coding = form.coding.unwrap_or(self.coding);
-        let kind = form.kind.unwrap_or(self.kind);
+        // What the numbers stand for differs by pin and by generation.
+        let kind = if self.repeat == Repeat::RoboClawPins {
+            Kind::Choice(ControlPin::ALL[index].functions(layout_of(subject.generation)))
+        } else {
+            form.kind.unwrap_or(self.kind)
+        };
         let range = form.range.unwrap_or(self.range).at(coding, subject);
         Row {
             key: self.key.replace("{n}", &number),
@@ -515,6 +538,8 @@ impl Template {
             DefaultValue::Bool(on) => SettingValue::Bool(on),
             DefaultValue::Int(number) => SettingValue::Int(number),
             DefaultValue::Number(number) => exact(number),
+            DefaultValue::WithinRange(number) => exact(number.clamp(range.min, range.max)),
+            DefaultValue::Raw(raw) => coding.decode(kind, raw),
             DefaultValue::Key(key) => SettingValue::Choice(key),
             DefaultValue::Keys(keys) => SettingValue::Choice(keys[index.min(keys.len() - 1)]),
             DefaultValue::Lowest => exact(range.min),

@@ -7,6 +7,7 @@ use brushwork_canopen::NodeId;
 use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::models::{Family, Model};
 use brushwork_mcp_wire::packet_serial::{Address, Generation};
+use brushwork_mcp_wire::roboclaw::{ConfigWord, ENCODER_ABSOLUTE};
 use brushwork_plant::EncoderKind;
 use brushwork_plant::machine::StreamIndex;
 use brushwork_plant::presets;
@@ -21,7 +22,7 @@ pub struct ControllerConfig {
     pub generation: Generation,
     /// Its packet serial address when it leaves the factory.
     pub address: Address,
-    /// What it drives and what feeds it. [`WorldParams::pins`] is set to the model's.
+    /// What it drives and what feeds it. [`WorldParams::pins`] is set to the model's: its input pins, on a RoboClaw its control pins.
     pub world: WorldParams,
     /// The form of its control loops.
     pub law: ControlLaw,
@@ -63,7 +64,7 @@ impl ControllerConfig {
             model,
             generation: Generation::Gen1,
             address: Address::DEFAULT,
-            world: presets::world_of(axis, axis, model.pins.len()),
+            world: presets::world_of(axis, axis, model.wired_pins()),
             law: ControlLaw::default(),
             seed: 0,
             settings: None,
@@ -85,6 +86,10 @@ impl ControllerConfig {
     pub fn set_rate(&mut self, stream: StreamIndex, rate_bps: u32) {
         let mut settings = self.stored_settings();
         settings.streams[stream.index()].rate_bps = rate_bps;
+        if self.model.family == Family::RoboClaw {
+            let word = ConfigWord(settings.unit.config_word).with_baud_bps(rate_bps);
+            settings.unit.config_word = word.0;
+        }
         self.settings = Some(settings);
     }
 
@@ -108,10 +113,9 @@ fn set_input_for(
     motor: &mut MotorRegisters,
     signals: &mut [SignalSettings],
 ) {
-    const ROBOCLAW_ABSOLUTE: u8 = 1;
     match (family, signals.get_mut(usize::from(motor.encoder_mode))) {
         (Family::RoboClaw, _) => {
-            motor.encoder_mode = if kind == EncoderKind::Quadrature { 0 } else { ROBOCLAW_ABSOLUTE };
+            motor.encoder_mode = if kind == EncoderKind::Quadrature { 0 } else { ENCODER_ABSOLUTE };
         }
         (Family::Mcp, Some(signal)) => {
             signal.kind = match kind {

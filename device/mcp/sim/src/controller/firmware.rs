@@ -2,6 +2,7 @@
 
 use super::can::Can;
 use super::config::{ControllerConfig, FirmwareOptions};
+use super::control::{Control, follow_rate};
 use super::loader::Loader;
 use super::memory::Memory;
 use super::pins::PinFunctions;
@@ -14,6 +15,7 @@ use crate::signals::{Signal, Triggers};
 use crate::supervision::{DetectedBattery, EStop, Protection};
 use brushwork_mcp_wire::models::{Family, Model};
 use brushwork_mcp_wire::packet_serial::{Address, Generation};
+use brushwork_mcp_wire::roboclaw::{ControlMode, ENCODER_MOTOR_REVERSED};
 use brushwork_plant::bridge::BridgeOutput;
 use brushwork_plant::machine::StreamIndex;
 use brushwork_plant::world::Leds;
@@ -55,6 +57,8 @@ pub(super) struct Firmware {
     /// Whether the emergency stop or a latched error holds the motors.
     pub is_held: bool,
     pub ports: PortActivity,
+    /// What a RoboClaw does by its pins and its configuration word.
+    pub control: Control,
     /// Which kind of input commands the motors, and its level.
     pub source: Option<(usize, Source)>,
     /// What signals last told the motors, so that the same is not told again.
@@ -99,7 +103,10 @@ pub(super) struct PortActivity {
 impl Firmware {
     /// Starts up: settings come from EEPROM, everything else is as after a reset.
     pub fn boot(config: &ControllerConfig, memory: Memory, readings: Readings, now: Duration) -> Self {
-        let settings = memory.load(config.model, config.address);
+        let mut settings = memory.load(config.model, config.address);
+        if config.model.family == Family::RoboClaw {
+            follow_rate(&mut settings);
+        }
         Self {
             model: config.model,
             generation: config.generation,
@@ -120,6 +127,7 @@ impl Firmware {
             estop_is_on_a_pin: config.world.wiring.estop_pin.is_some(),
             is_held: false,
             ports: PortActivity::default(),
+            control: Control::boot(settings.unit.config_word, readings.main_volts),
             source: None,
             steered: [None; 2],
             mixer: Mixer::default(),
@@ -145,11 +153,20 @@ impl Firmware {
         self.now = now;
         self.memory.eeprom.advance(now);
         self.readings = Readings::take(world);
+        self.turn_readings_round();
         self.rts = world.rts();
         self.update_signals(world);
+        if self.is_roboclaw() {
+            self.update_control_pins(world);
+        }
         self.update_protection();
         self.update_source();
-        self.steer_by_signals();
+        if self.is_roboclaw() {
+            self.run_homing();
+            self.steer_by_inputs(world);
+        } else {
+            self.steer_by_signals();
+        }
         self.run_channels();
         if self.loader.is_none() {
             let up_for = self.up_for();
@@ -160,7 +177,10 @@ impl Firmware {
 
     /// What a bridge does from a tick on. Bridged, motor 2's leads drive nothing of their own.
     pub fn output(&self, motor: Motor) -> BridgeOutput {
-        if self.is_idle(motor) { BridgeOutput::Coast } else { self.channels[motor.index()].output() }
+        if self.is_idle(motor) {
+            return BridgeOutput::Coast;
+        }
+        self.turned_round(motor, self.channels[motor.index()].output())
     }
 
     /// What a bridge does in the midst of a tick.
@@ -168,7 +188,30 @@ impl Firmware {
         if self.is_idle(motor) {
             return BridgeOutput::Coast;
         }
-        self.channels[motor.index()].refine(sense.amps, sense.bus_volts, sense.step_s)
+        let amps = if self.is_motor_reversed(motor) { -sense.amps } else { sense.amps };
+        let output = self.channels[motor.index()].refine(amps, sense.bus_volts, sense.step_s);
+        self.turned_round(motor, output)
+    }
+
+    /// Whether a RoboClaw is told to turn a motor the other way round (RoboClaw manual 2018, command 92).
+    fn is_motor_reversed(&self, motor: Motor) -> bool {
+        self.is_roboclaw() && self.settings.motors[motor.index()].encoder_mode & ENCODER_MOTOR_REVERSED != 0
+    }
+
+    fn turned_round(&self, motor: Motor, output: BridgeOutput) -> BridgeOutput {
+        match output {
+            BridgeOutput::Duty(duty) if self.is_motor_reversed(motor) => BridgeOutput::Duty(-duty),
+            BridgeOutput::Duty(_) | BridgeOutput::Brake | BridgeOutput::Coast => output,
+        }
+    }
+
+    /// Currents count along the way that the motor is told to turn.
+    fn turn_readings_round(&mut self) {
+        for motor in Motor::BOTH {
+            if self.is_motor_reversed(motor) {
+                self.readings.amps[motor.index()] *= -1.0;
+            }
+        }
     }
 
     /// A byte has come on a stream.
@@ -181,6 +224,12 @@ impl Firmware {
     /// the host holds (MCP manual 1.9.3).
     pub fn speaks_packet_serial(&self, stream: StreamIndex) -> bool {
         const PACKET_SERIAL: u8 = 1;
+        if self.is_roboclaw()
+            && stream != StreamIndex::Usb
+            && self.control.mode() != ControlMode::PacketSerial
+        {
+            return false;
+        }
         let is_forced = stream == StreamIndex::Usb && self.rts;
         is_forced || self.settings.streams[stream.index()].kind == PACKET_SERIAL
     }
@@ -192,7 +241,9 @@ impl Firmware {
 
     /// Takes the settings back from EEPROM (command 95).
     pub fn reload_settings(&mut self) {
+        let before = self.settings.streams.clone();
         self.settings = self.memory.load(self.model, self.factory_address);
+        self.keep_rates(&before);
     }
 
     /// Time since power up.
@@ -218,9 +269,10 @@ impl Firmware {
     /// Gives a command to a channel, whoever it comes from. A fault stops any further action until it is over (MCP manual 1.6.2).
     pub fn command(&mut self, motor: Motor, command: MotionCommand) {
         let stops = matches!(command, MotionCommand::SafeStop | MotionCommand::Coast);
-        if (self.is_bridged() && motor == Motor::M2) || (self.is_held && !stops) {
+        if self.drives_nothing(motor) || (self.is_held && !stops) {
             return;
         }
+        self.control.end_homing();
         self.reversed[motor.index()] = false;
         self.script.drives[motor.index()] = false;
         self.loop_faults[motor.index()] = LoopFaults::default();
@@ -249,7 +301,13 @@ impl Firmware {
     }
 
     fn is_idle(&self, motor: Motor) -> bool {
-        self.loader.is_some() || (self.is_bridged() && motor == Motor::M2)
+        self.loader.is_some() || self.drives_nothing(motor)
+    }
+
+    /// Whether a motor has no bridge of its own: bridged, or on a board of one channel. Assumed: such a board acknowledges commands
+    /// for motor 2.
+    pub fn drives_nothing(&self, motor: Motor) -> bool {
+        motor == Motor::M2 && (self.is_bridged() || self.model.motors == 1)
     }
 
     fn run_channels(&mut self) {

@@ -11,6 +11,7 @@ use crate::priority::{self, Activity, Source};
 use crate::signals::{FULL_SCALE, PinReading, Triggers};
 use brushwork_mcp_wire::models::Family;
 use brushwork_mcp_wire::packet_serial::Generation;
+use brushwork_mcp_wire::roboclaw::{ControlMode, ENCODER_ABSOLUTE, ENCODER_IN_RC, ENCODER_REVERSED};
 use brushwork_plant::world::{PinState, World};
 use brushwork_plant::{ABSOLUTE_FULL_SCALE_VOLTS, ABSOLUTE_MAX_COUNTS, EncoderKind, EncoderReading};
 use brushwork_script::debug::StopCause;
@@ -25,8 +26,6 @@ const KIND_ENCODER: u8 = 3;
 const STREAM_DISABLED: u8 = 2;
 /// Level above which a digital pin reads high.
 const DIGITAL_THRESHOLD_VOLTS: f64 = 2.5;
-/// RoboClaw encoder mode bit: absolute (public clients, 2015-2025).
-const ROBOCLAW_ABSOLUTE: u8 = 0x01;
 
 impl Firmware {
     /// Reads every pin that has a function, and from them the encoder of each motor.
@@ -59,7 +58,14 @@ impl Firmware {
         let before = self.source;
         self.source = match self.model.family {
             Family::Mcp => priority::select(self.settings.priority, self.activity()),
-            Family::RoboClaw => Some((0, Source::Serial)),
+            Family::RoboClaw => Some((
+                0,
+                match self.control.mode() {
+                    ControlMode::Rc => Source::Pulse,
+                    ControlMode::Analog => Source::Analog,
+                    ControlMode::SimpleSerial | ControlMode::PacketSerial => Source::Serial,
+                },
+            )),
         };
         if before.is_some() && before.map(|(_, source)| source) != self.source.map(|(_, source)| source) {
             self.stop_what_no_script_drives();
@@ -103,7 +109,8 @@ impl Firmware {
         }
     }
 
-    fn steer(&mut self, motor: Motor, value: f64) {
+    /// Gives a motor a command of -32767 to 32767, unless it has it.
+    pub(super) fn steer(&mut self, motor: Motor, value: f64) {
         let command = self.steering_command(motor, value);
         if self.steered[motor.index()] != Some(command) {
             self.command(motor, command);
@@ -134,7 +141,7 @@ impl Firmware {
     }
 
     /// Does what the pins ask for; `stops_script` is the one that stops the script.
-    fn take_triggers(&mut self, triggers: Triggers, stops_script: Option<usize>) {
+    pub(super) fn take_triggers(&mut self, triggers: Triggers, stops_script: Option<usize>) {
         self.triggers = triggers;
         for motor in Motor::BOTH {
             let asked = triggers.motors[motor.index()];
@@ -187,9 +194,13 @@ impl Firmware {
         self.ports.timed_out = is_late;
     }
 
+    /// Whether inputs command a motor by its encoder.
     fn has_encoder(&self, motor: Motor) -> bool {
         let mode = self.settings.motors[motor.index()].encoder_mode;
-        self.model.family == Family::RoboClaw || usize::from(mode) < self.signals.len()
+        match self.model.family {
+            Family::RoboClaw => mode & ENCODER_IN_RC != 0,
+            Family::Mcp => usize::from(mode) < self.signals.len(),
+        }
     }
 
     /// What a motor takes for its encoder (commands 91 to 93). Assumed, besides the numbering of
@@ -198,7 +209,8 @@ impl Firmware {
     fn encoder_input(&self, motor: Motor) -> EncoderInput {
         let mode = self.settings.motors[motor.index()].encoder_mode;
         let index = usize::from(mode);
-        let own = self.readings.plugs[motor.index()];
+        let plug = if self.swaps_encoders() { 1 - motor.index() } else { motor.index() };
+        let own = self.readings.plugs[plug];
         match (self.model.family, self.settings.signals.get(index)) {
             (Family::RoboClaw, _) => roboclaw_encoder(mode, own),
             (Family::Mcp, None) => EncoderInput::Quadrature(0),
@@ -276,12 +288,17 @@ fn own_encoder(own: EncoderReading) -> EncoderInput {
     }
 }
 
-/// A RoboClaw is told which kind of encoder it has; of another kind it hears nothing.
+/// A RoboClaw is told which kind of encoder it has, and which way round; of another kind it hears nothing.
 fn roboclaw_encoder(mode: u8, own: EncoderReading) -> EncoderInput {
-    let expects_absolute = mode & ROBOCLAW_ABSOLUTE != 0;
+    let expects_absolute = mode & ENCODER_ABSOLUTE != 0;
+    let is_reversed = mode & ENCODER_REVERSED != 0;
     match (own_encoder(own), expects_absolute) {
         (EncoderInput::Quadrature(_), true) => EncoderInput::Absolute(0),
         (EncoderInput::Absolute(_), false) => EncoderInput::Quadrature(0),
+        (EncoderInput::Quadrature(counts), false) if is_reversed => EncoderInput::Quadrature(-counts),
+        (EncoderInput::Absolute(value), true) if is_reversed => {
+            EncoderInput::Absolute(ABSOLUTE_MAX_COUNTS as i32 - value)
+        }
         (matching, _) => matching,
     }
 }

@@ -10,6 +10,7 @@ mod can;
 mod canbus;
 mod commands;
 mod config;
+mod control;
 mod debugging;
 mod dispatch;
 mod firmware;

@@ -24,7 +24,7 @@ impl Firmware {
         let faults = self.loop_faults;
         let homed = self.triggers.motors.map(MotorTriggers::is_limited);
         [
-            (Condition::EStop, self.estop.is_tripped()),
+            (Condition::EStop, self.is_stopped()),
             (Condition::Temperature1Error, limits.temperature_error),
             (Condition::Temperature2Error, limits.temperature_2_error),
             (Condition::MainBatteryHighError, limits.main_high_error),

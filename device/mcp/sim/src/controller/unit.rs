@@ -47,7 +47,7 @@ impl Controller {
     /// # Errors
     /// If an axis cannot be built from its parameters.
     pub fn new(config: ControllerConfig) -> Result<Self, ParamsError> {
-        let params = WorldParams { pins: config.model.pins.len(), ..config.world.clone() };
+        let params = WorldParams { pins: config.model.wired_pins(), ..config.world.clone() };
         let world = World::new(&params, config.seed)?;
         let memory = Memory::holding(&config.stored_settings());
         let mut controller = Self {
@@ -273,6 +273,8 @@ impl Controller {
         if let Some(loader) = &mut firmware.loader {
             let step = loader.feed(byte, unit_now, &mut firmware.memory.flash);
             self.load(stream, step);
+        } else if firmware.hears_simple_serial(stream) {
+            firmware.take_simple_serial(byte);
         } else if !firmware.speaks_packet_serial(stream) {
             firmware.hear_for_script(stream, byte, unit_now);
         } else if let Some(framed) = self.ports[stream.index()].feed(byte, self.now) {

@@ -6,6 +6,7 @@ use super::readings::Readings;
 use crate::motion::{BridgeOverride, MotionCommand};
 use crate::supervision::{EStopReset, LedInputs, Limits, Observed, OutputInputs, leds, output_is_on};
 use brushwork_mcp_wire::packet_serial::{Generation, scale};
+use brushwork_mcp_wire::roboclaw::PinFunction;
 use brushwork_plant::ClampDrive;
 use brushwork_plant::bridge::PwmMode;
 use brushwork_plant::world::{UnitFault, World};
@@ -33,11 +34,16 @@ impl Firmware {
     pub(super) fn update_estop(&mut self) {
         let button = self.readings.estop_pressed && !self.estop_is_on_a_pin;
         self.estop.update(button || self.triggers.estop, self.estop_reset());
-        let is_held = self.estop.is_tripped() || self.has_latched_error();
+        let is_held = self.is_stopped() || self.has_latched_error();
         if is_held && !self.is_held {
             self.stop_both();
         }
         self.is_held = is_held;
+    }
+
+    /// Whether an emergency stop holds the motors.
+    pub(super) fn is_stopped(&self) -> bool {
+        self.estop.is_tripped() || self.control.is_held()
     }
 
     /// How the emergency stop is released.
@@ -47,7 +53,7 @@ impl Firmware {
 
     /// What protection makes of both bridges.
     pub(super) fn bridge_override(&self) -> BridgeOverride {
-        if self.estop.is_tripped() { BridgeOverride::Brake } else { self.protection.bridge() }
+        if self.is_stopped() { BridgeOverride::Brake } else { self.protection.bridge() }
     }
 
     /// Share of the current limits that temperature leaves.
@@ -80,6 +86,9 @@ impl Firmware {
             *state = over.unwrap_or_else(|| output_is_on(settings, &inputs));
         }
         world.set_pwm_modes(Motor::BOTH.map(|motor| self.pwm_mode(motor)));
+        if self.is_roboclaw() {
+            self.outputs = self.control_outputs(inputs.over_voltage);
+        }
         if let Some(dout) = world.brake_resistor_dout() {
             world.set_clamp(self.clamp_drive(dout));
         }
@@ -120,10 +129,11 @@ impl Firmware {
     fn clamp_drive(&self, dout: usize) -> ClampDrive {
         let settings = self.settings.outputs.get(dout);
         let is_overridden = self.overrides.get(dout).copied().flatten().is_some();
-        if !is_overridden
-            && settings.is_some_and(|output| output.action == ACTION_OVER_VOLTAGE && !output.inverted)
-        {
-            let on_volts = self.limits().main_volts.1;
+        let has_action =
+            settings.is_some_and(|output| output.action == ACTION_OVER_VOLTAGE && !output.inverted);
+        let is_control = self.is_roboclaw() && self.output_function(dout) == PinFunction::VoltageClamp;
+        if !is_overridden && has_action || is_control {
+            let on_volts = self.main_volts_limits().1;
             return ClampDrive::Above { on_volts, off_volts: on_volts - OVER_VOLTAGE_HYSTERESIS_VOLTS };
         }
         if self.outputs.get(dout) == Some(&true) { ClampDrive::On } else { ClampDrive::Off }
@@ -166,15 +176,23 @@ impl Firmware {
         }
     }
 
+    /// The main battery limits in force.
+    fn main_volts_limits(&self) -> (f64, f64) {
+        let battery = &self.settings.battery;
+        let volts = |tenths: u16| f64::from(tenths) * scale::VOLTAGE_VOLTS;
+        let own = match self.battery {
+            Some(detected) => detected.limits_volts(),
+            None => (volts(battery.main_min_tenths), volts(battery.main_max_tenths)),
+        };
+        self.control.battery_volts(own, battery.main_auto_offset_tenths)
+    }
+
     fn limits(&self) -> Limits {
         let battery = &self.settings.battery;
         let volts = |tenths: u16| f64::from(tenths) * scale::VOLTAGE_VOLTS;
         let motion = Motor::BOTH.map(|motor| self.motion_settings(motor));
         Limits {
-            main_volts: match self.battery {
-                Some(detected) => detected.limits_volts(),
-                None => (volts(battery.main_min_tenths), volts(battery.main_max_tenths)),
-            },
+            main_volts: self.main_volts_limits(),
             rated_main_volts: self.model.main_volts,
             logic_volts: (volts(battery.logic_min_tenths), volts(battery.logic_max_tenths)),
             max_amps: motion.map(|settings| settings.max_current_amps()),

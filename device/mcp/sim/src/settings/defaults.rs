@@ -1,12 +1,14 @@
 //! Factory settings (MCP manual 1.2.10, 1.9 and the command descriptions), by model.
 
 use super::{
-    BatterySettings, MotorRegisters, OutputSettings, RoboclawSettings, Settings, Shape, SignalSettings,
-    StreamSettings, UnitSettings,
+    BatterySettings, ControlInput, MotorRegisters, OutputSettings, RoboclawSettings, Settings, Shape,
+    SignalSettings, StreamSettings, UnitSettings,
 };
 use crate::motion::MotionSettings;
 use brushwork_mcp_wire::codes::ENCODER_PIN_NONE;
 use brushwork_mcp_wire::models::{Family, Model};
+use brushwork_mcp_wire::packet_serial::Address;
+use brushwork_mcp_wire::roboclaw::ConfigWord;
 
 /// Logic battery limits on the settings screens (MCP manual 1.2.10).
 const LOGIC_MIN_TENTHS: u16 = 80;
@@ -17,6 +19,8 @@ const TIMEOUT_MS: u32 = 1000;
 const MCP_RATE_BPS: u32 = 115_200;
 /// UART bit rate of a RoboClaw (public clients, 2015-2025).
 const ROBOCLAW_RATE_BPS: u32 = 38_400;
+/// Dead band of the R/C and analog inputs, 2.5 % (RoboClaw manual 2018, command 76).
+const DEADBAND: u8 = 25;
 /// CANopen bit rate (MCP manual 1.9.4) and I2C bit rate (1.9.6).
 const CAN_RATE_BPS: u32 = 250_000;
 const I2C_RATE_BPS: u32 = 100_000;
@@ -48,10 +52,21 @@ impl Settings {
             ..MotorRegisters::default()
         };
         Self {
-            unit: UnitSettings { address, ..UnitSettings::default() },
+            unit: UnitSettings {
+                address,
+                config_word: match model.family {
+                    Family::Mcp => 0,
+                    Family::RoboClaw => {
+                        let number = address.saturating_sub(Address::FIRST.get());
+                        ConfigWord::packet_serial(number).0
+                    }
+                },
+                ..UnitSettings::default()
+            },
             battery: BatterySettings {
                 main_min_tenths: tenths_of(model.main_volts.0),
                 main_max_tenths: tenths_of(model.main_volts.1),
+                logic_max_tenths: LOGIC_MAX_TENTHS.min(tenths_of(model.logic_volts.1)),
                 ..BatterySettings::default()
             },
             motors: [motor(0), motor(1)],
@@ -77,7 +92,14 @@ impl Settings {
                 },
                 ..StreamSettings::default()
             }),
-            roboclaw: RoboclawSettings::default(),
+            roboclaw: RoboclawSettings {
+                inputs: [ControlInput {
+                    reverse_deadband: DEADBAND,
+                    forward_deadband: DEADBAND,
+                    ..ControlInput::default()
+                }; 2],
+                ..RoboclawSettings::default()
+            },
         }
     }
 }

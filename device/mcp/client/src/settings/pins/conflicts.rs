@@ -1,7 +1,7 @@
 //! Settings that contradict each other: each one is allowed alone, together they do not do what they look like.
 
 use brushwork_mcp_wire::codes::{ENCODER_PIN_NONE, STREAMS};
-use brushwork_mcp_wire::models::{Family, Pin};
+use brushwork_mcp_wire::models::Pin;
 use serde::Serialize;
 
 use crate::messages::ConflictMessage;
@@ -9,6 +9,7 @@ use crate::model_of;
 use crate::settings::pins::mode::PinMode;
 use crate::settings::pins::shape::SignalShape;
 use crate::settings::pins::values::{Lookup, PinValues, choice};
+use crate::settings::roboclaw;
 use brushwork_link::Message;
 use brushwork_link::settings::SettingValue;
 use brushwork_link::settings::SettingsTable;
@@ -48,12 +49,17 @@ pub enum ConflictKind {
     TwoCommanders,
     /// A bus is set to a rate that it does not have.
     NoSuchRate,
+    /// A setting takes the place of others.
+    Overruled,
 }
 
 /// Every contradiction among the settings that are known, pin by pin.
 pub fn conflicts(table: &SettingsTable, get: Lookup<'_>) -> Vec<Conflict> {
+    if roboclaw::is_of(table) {
+        return roboclaw::conflicts(table, get);
+    }
     let subject = table.subject();
-    if model_of(subject).is_none_or(|model| model.family != Family::Mcp) {
+    if model_of(subject).is_none() {
         return Vec::new();
     }
     let pins: Vec<Judged<'_>> =

@@ -11,3 +11,4 @@ pub use conflicts::{Conflict, ConflictKind, conflicts};
 pub use function::function_text;
 pub use mode::{PinMode, change_mode, modes, open_range};
 pub use shape::{Behind, SignalShape};
+pub(super) use values::{Lookup, choice};

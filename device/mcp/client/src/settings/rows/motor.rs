@@ -3,13 +3,14 @@
 
 use brushwork_mcp_wire::models::Family;
 use brushwork_mcp_wire::packet_serial::{number, scale};
+use brushwork_mcp_wire::roboclaw::{ENCODER_KINDS, IDLE_MODES};
 use brushwork_values::Unit;
 
 use crate::settings::rows::scales::{
     AMPS, DECISECONDS, DUTY_ACCEL, GEN1, GEN2, GEN3, GEN4, I32_STEPS, POSITION_GAIN, U32_STEPS,
     VELOCITY_GAIN, steps_of,
 };
-use crate::settings::template::{DefaultValue, Form, Limits, Template, motor, settings};
+use crate::settings::template::{DefaultValue, Form, Limits, Template, at, motor, settings};
 use brushwork_link::settings::Coding;
 use brushwork_link::settings::Group;
 
@@ -33,11 +34,32 @@ pub(crate) static ROWS: &[Template] = settings! {
             .simulated_only(PIN_NUMBERS)]
         "The number of the input signal that serves as this motor's encoder. Which number stands for \
          which pin is not published. MCP manual 1.2.10, command 92.";
-    motor("motor{n}.encoder.mode", "Encoder mode", Group::ENCODERS).int(Unit::None, Limits::Steps(0, 255))
-        .assumed_default(DefaultValue::EncoderPin).only_on(Family::RoboClaw);
-        [Form::field(READ_ENCODERS, SET_ENCODER, &["mode_m1", "mode_m2"]).writing(&["mode"])]
-        "Bit 0: 0 for a quadrature encoder, 1 for an absolute one. Bit 7: use it with RC and analog \
-         inputs too. Public clients, 2015-2025, command 92.";
+    encoder("motor{n}.encoder.kind", "Encoder").choice(ENCODER_KINDS)
+        .assumed_default(DefaultValue::Key("quadrature"));
+        [encoder_bits(0, 1)]
+        "A quadrature encoder counts lines; an absolute one is a voltage. RoboClaw manual 2018, command 92, bit \
+         0.";
+    encoder("motor{n}.encoder.motor_reversed", "Motor reversed").assumed_default(DefaultValue::Bool(false));
+        [encoder_bits(5, 1)]
+        "The motor turns the other way round. Together with the encoder it turns a whole axis round; alone it \
+         makes a loop with the right wiring run away. RoboClaw manual 2018, command 92, bit 5.";
+    encoder("motor{n}.encoder.reversed", "Encoder reversed").assumed_default(DefaultValue::Bool(false));
+        [encoder_bits(6, 1)]
+        "The encoder counts the other way round, so that its two lines need not be changed over. RoboClaw \
+         manual 2018, command 92, bit 6.";
+    encoder("motor{n}.encoder.in_rc", "Encoder in R/C and analog mode").assumed_default(DefaultValue::Bool(false));
+        [encoder_bits(7, 1)]
+        "R/C and analog inputs command speed, or position where the motor has a position loop, instead of \
+         duty. RoboClaw manual 2018, command 92, bit 7.";
+    encoder("motor{n}.encoder.other_bits", "Encoder mode, bits 1 to 4").int(Unit::None, Limits::Steps(0, 15))
+        .assumed_default(DefaultValue::Int(0));
+        [encoder_bits(1, 4)]
+        "What these bits do is not published. Leave them as they are. Command 92.";
+    encoder("motor{n}.encoder.mode", "Encoder mode").int(Unit::Bits, Limits::Steps(0, 255))
+        .assumed_default(DefaultValue::Int(0));
+        [Form::read_only(at(READ_ENCODERS, &["mode_m1", "mode_m2"]), "The mode as a whole is shown for \
+         comparison; change its parts above.")]
+        "All of the encoder's settings in one number. Command 91.";
     motor("motor{n}.inductance_henries", "L", Group::MOTOR)
         .fixed(Unit::Henries, INDUCTANCE_RESISTANCE, 6, U32_STEPS)
         .assumed_default(DefaultValue::Number(0.0));
@@ -75,11 +97,12 @@ pub(crate) static ROWS: &[Template] = settings! {
         .assumed_default(DefaultValue::Number(0.0));
         [Form::bits(READ_PWM_IDLE, SET_PWM_IDLE, &["idle_m1", "idle_m2"], (0, 7)).only(GEN3, GEN4)]
         "How long after a stop the bridge goes idle. Public clients, 2018-2025, command 160.";
-    motor("motor{n}.idle.mode", "Idle mode", Group::MOTOR).int(Unit::None, Limits::Steps(0, 1))
-        .assumed_default(DefaultValue::Int(0));
+    motor("motor{n}.idle.mode", "Idle mode, bit 7", Group::MOTOR).choice(IDLE_MODES)
+        .assumed_default(DefaultValue::Key("off"));
         [Form::bits(READ_PWM_IDLE, SET_PWM_IDLE, &["idle_m1", "idle_m2"], (7, 1)).only(GEN3, GEN4)]
-        "0 or 1: what the bridge does when idle; which number brakes is not published. Public clients, \
-         2018-2025, command 160.";
+        "What happens once the bridge is idle. Sources contradict each other: two libraries call the bit enable, \
+         an example calls it brake or coast. Try it before you rely on it. Public clients, 2018-2025, command 160, \
+         bit 7.";
     motor("motor{n}.velocity.p", "Velocity P", Group::VELOCITY)
         .fixed(Unit::Gain, VELOCITY_GAIN, 3, U32_STEPS).default(DefaultValue::Number(1.0));
         [Form::field(READ_VELOCITY_PID, SET_VELOCITY_PID, &["p"])]
@@ -156,15 +179,24 @@ pub(crate) static ROWS: &[Template] = settings! {
         .fixed(Unit::Percent, DEFAULT_SPEED, 1, Limits::Steps(0, 0x7FFF))
         .assumed_default(DefaultValue::Number(0.0));
         [Form::field(READ_HOMING, SET_HOMING, &["duty_m1", "duty_m2"]).only(GEN2, GEN3).writing(&["duty"])]
-        "Duty with which the motor looks for its home switch. Public clients, 2016-2020, command 105.";
+        "How hard the motor looks for its home switch at power up: a share of the top speed where it has a \
+         velocity or position loop, else a duty. RoboClaw manual 2018, command 105.";
     motor("motor{n}.home.timeout_seconds", "Homing time-out", Group::HOMING)
         .fixed(Unit::Seconds, Coding::PerUnit(steps_of(scale::HOMING_TIMEOUT_S)), 2, U32_STEPS)
         .assumed_default(DefaultValue::Number(0.0));
         [Form::field(READ_HOMING, SET_HOMING, &["timeout_m1", "timeout_m2"]).only(GEN2, GEN4)
             .writing(&["timeout"])]
-        "How long the motor looks for its home switch before it gives up. Public clients, 2016-2025, \
-         command 105.";
+        "How long the motor looks for its home switch before it gives up. With 0 it does not look. RoboClaw \
+         manual 2018, command 105.";
 };
+
+const fn encoder(key: &'static str, label: &'static str) -> Template {
+    motor(key, label, Group::ENCODERS).only_on(Family::RoboClaw)
+}
+
+const fn encoder_bits(shift: u8, width: u8) -> Form {
+    Form::bits(READ_ENCODERS, SET_ENCODER, &["mode_m1", "mode_m2"], (shift, width)).writing(&["mode"])
+}
 
 const PIN_NUMBERS: &str = "Which number stands for which pin is not public, so it is not written to a real \
                            controller. Choose the encoder pin with the vendor's own program.";

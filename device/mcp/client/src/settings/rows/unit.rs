@@ -77,7 +77,7 @@ pub(crate) static ROWS: &[Template] = settings! {
         "Below this logic battery voltage the controller stops with an error, since its own electronics \
          would fail. MCP manual 1.6.3, command 58.";
     setting("limits.logic_battery.max_volts", "Logic battery maximum", Group::VOLTAGE_LIMITS)
-        .fixed(Unit::Volts, VOLTS, 1, Limits::LogicVolts).assumed_default(DefaultValue::Number(15.0));
+        .fixed(Unit::Volts, VOLTS, 1, Limits::LogicVolts).assumed_default(DefaultValue::WithinRange(15.0));
         [Form::field(&[number::READ_LOGIC_VOLTAGES], &[number::SET_LOGIC_VOLTAGES], &["max"])]
         "Above this logic battery voltage the controller stops with an error. MCP manual 1.6.3, command \
          58.";

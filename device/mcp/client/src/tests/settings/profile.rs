@@ -161,7 +161,11 @@ fn each_fault_is_told_with_its_place() {
     assert_eq!(
         broken("mcp266", "mcp999"),
         ["model (line 4, column 3): \"mcp999\" is no known model; known are mcp233, mcp236, mcp263, \
-             mcp266, mcp2126, mcp2128, mcp2163, mcp2166, mcp2168, mcp2206, roboclaw-2x7a."]
+             mcp266, mcp2126, mcp2128, mcp2163, mcp2166, mcp2168, mcp2206, roboclaw-solo-30a, roboclaw-solo-60a, \
+             roboclaw-solo-300a, roboclaw-solo-300ahv, roboclaw-2x5a, roboclaw-2x7a, roboclaw-2x15a, \
+             roboclaw-2x30a, roboclaw-2x45a, roboclaw-2x60a, roboclaw-2x60ahv, roboclaw-2x120a, \
+             roboclaw-2x120ahv, roboclaw-2x160a, roboclaw-2x160ahv, roboclaw-2x200ahv, roboclaw-2x300ahv, \
+             roboclaw-2x400ahv."]
     );
     assert_eq!(
         broken(

@@ -1,10 +1,11 @@
-//! Commands that only RoboClaw units give a meaning to: 74 to 77, 98, 99, 102, 104 to 107, 117, 118. Kept and returned.
+//! Commands that only RoboClaw units give a meaning to: 74 to 77, 98, 99, 102, 104 to 107, 117, 118. What they set acts in
+//! [`control`](super::super::control).
 
 use super::super::answer::{Answer, Arguments, Handlers, On, tell};
 use super::super::firmware::Firmware;
 use crate::settings::ControlInput;
 use brushwork_mcp_wire::packet_serial::name::*;
-use brushwork_mcp_wire::packet_serial::{Address, Generation, commands};
+use brushwork_mcp_wire::packet_serial::{Generation, commands};
 
 pub(super) const HANDLERS: Handlers = &[
     &On(commands::SET_PIN_FUNCTIONS, |unit, args| {
@@ -22,14 +23,10 @@ pub(super) const HANDLERS: Handlers = &[
     &On(commands::SET_CONTROL_SETTINGS, set_control_settings),
     &On(commands::READ_CONTROL_SETTINGS, |unit, _| control_settings(unit)),
     &On(commands::SET_CONFIG, |unit, args| {
-        let config = args.u16(CONFIG);
-        unit.settings.unit.config_word = config;
-        // Bits 8 to 10 are the address; it moves at once (public clients, 2015-2025).
-        let address = Address::FIRST.get() + (config >> CONFIG_ADDRESS_SHIFT & 0x07) as u8;
-        unit.settings.unit.address = address;
+        unit.set_config_word(args.u16(CONFIG));
         Answer::Ack
     }),
-    &On(commands::READ_CONFIG, |unit, _| Answer::of([tell(CONFIG, unit.settings.unit.config_word.into())])),
+    &On(commands::READ_CONFIG, |unit, _| Answer::of([tell(CONFIG, unit.config_word().into())])),
     &On(commands::SET_AUX_DUTIES, |unit, args| {
         if matches!(unit.generation, Generation::Gen2 | Generation::Gen3) {
             unit.settings.roboclaw.control_duties[0] = args.int_or(DUTY_1, 0) as u16;
@@ -69,9 +66,6 @@ pub(super) const HANDLERS: Handlers = &[
         Answer::of([tell(S1_MIN, s1_min), tell(S1_MAX, s1_max), tell(S2_MIN, s2_min), tell(S2_MAX, s2_max)])
     }),
 ];
-
-/// Place of the address in the configuration word (public clients, 2015-2025).
-const CONFIG_ADDRESS_SHIFT: u16 = 8;
 
 fn set_homing<const L: u8>(unit: &mut Firmware, motor: usize, args: &Arguments<'_, L>) -> Answer<L> {
     let motor = &mut unit.settings.motors[motor];

@@ -86,8 +86,9 @@ impl Firmware {
     /// Command 80: factory settings in RAM; the EEPROM keeps what it has. Assumed: the address stays, so that the unit can still
     /// be reached where several share a wire.
     fn restore_defaults(&mut self) {
-        let address = self.settings.unit.address;
+        let (address, streams) = (self.settings.unit.address, self.settings.streams.clone());
         self.settings = Settings::factory(self.model, address);
+        self.keep_rates(&streams);
     }
 }
 

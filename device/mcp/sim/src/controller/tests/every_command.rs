@@ -1,7 +1,9 @@
 //! Every row of the command table against the simulator, in every generation.
 
 use super::support::Bench;
+use crate::controller::ControllerConfig;
 use crate::controller::dispatch::handler;
+use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::packet_serial::{
     COMMANDS, Command, Direction, Form, Generation, Reply, Request, Simulated, lookup_key,
 };
@@ -114,7 +116,10 @@ fn what_is_written_is_read_back() {
 }
 
 fn check_pair(write: &Command, form: &Form, read: &Command, generation: Generation) {
-    let mut bench = Bench::new(generation);
+    // An MCP tells the configuration word from its other settings; a RoboClaw stores it.
+    let model = if write.key == "set_config" { "roboclaw-2x30a" } else { "mcp266" };
+    let model = models::lookup(model).expect("it is listed");
+    let mut bench = Bench::of(ControllerConfig { generation, ..ControllerConfig::of(model) });
     let request = request_for(write, generation, &bench, 3).expect("the form exists");
     bench.try_send(&request).unwrap_or_else(|| panic!("{} in {generation}", write.key));
     let asked_for = read.form(generation).map_or(&[][..], |form| form.request);

@@ -130,7 +130,7 @@ fn an_address_change_holds_from_the_next_packet_on() {
 fn the_configuration_word_moves_the_address_too() {
     use brushwork_plant::machine::StreamIndex;
     let mut bench = Bench::on(ControllerConfig::default(), StreamIndex::Uart1);
-    bench.ask(commands::SET_CONFIG, &[0x0600]); // bits 8 to 10: 6
+    bench.ask(commands::SET_CONFIG, &[0x0603]); // bits 8 to 10: 6, which are an address in packet serial mode alone
     assert!(bench.raw(&[0x80, 24]).is_empty());
     assert!(!bench.raw(&[0x86, 24]).is_empty());
 }

@@ -8,6 +8,7 @@ mod every_command;
 mod inputs;
 mod memory;
 mod protection;
+mod roboclaw;
 mod script;
 mod specials;
 mod support;

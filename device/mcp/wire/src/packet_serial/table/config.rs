@@ -26,21 +26,19 @@ pub(super) const ROWS: &[Command] = rows! {
     CLIENTS SET_SERIAL_NUMBER "serial number" SET_SERIAL, simulated LABEL;
     CLIENTS READ_SERIAL_NUMBER "read serial number" READ_SERIAL, simulated LABEL;
     CLIENTS SET_CONFIG "configuration word" sets![CONFIG],
-        simulated Simulated::StoredOnly("a RoboClaw word, of which only the address acts; the MCP has 139 to 145 for what it says"),
         client ClientUse::Superseded("the MCP has 139 to 147 for what it says"),
-        note "Writing it can move the unit to another address at once.";
-    CLIENTS READ_CONFIG "read configuration word" reads![CONFIG],
-        simulated Simulated::StoredOnly("a RoboClaw word, of which only the address acts; the MCP has 139 to 145 for what it says");
+        note "Writing it can move the unit to another address at once. The simulated MCP takes the address alone and tells its ports.";
+    CLIENTS READ_CONFIG "read configuration word" reads![CONFIG];
     CLIENTS READ_VOLTS "read voltages" VOLTS,
-        note "A factory test in generation 1, the CTRL modes in 2 and 3, which the simulated controller only stores.";
+        note "A factory test in generation 1, the CTRL modes in 2 and 3.";
     CLIENTS READ_TEMPERATURES "read temperatures" TEMPERATURES,
-        note "A factory test in generation 1, the CTRL modes in 2 and 3, which the simulated controller only stores.";
-    CLIENTS SET_AUX_DUTIES "auxiliary duties" SET_AUX, simulated CTRL_PINS,
+        note "A factory test in generation 1, the CTRL modes in 2 and 3.";
+    CLIENTS SET_AUX_DUTIES "auxiliary duties" SET_AUX,
         note "Sets the duty of the first CTRL pin in generations 2 and 3.";
-    CLIENTS READ_AUX_DUTIES "read auxiliary duties" READ_AUX, simulated CTRL_PINS;
-    CLIENTS SET_HOMING_M1 "M1 homing" SET_HOMING, simulated HOMING;
-    CLIENTS SET_HOMING_M2 "M2 homing" SET_HOMING, simulated HOMING;
-    CLIENTS READ_HOMING "read homing" READ_HOMING, simulated HOMING;
+    CLIENTS READ_AUX_DUTIES "read auxiliary duties" READ_AUX;
+    CLIENTS SET_HOMING_M1 "M1 homing" SET_HOMING;
+    CLIENTS SET_HOMING_M2 "M2 homing" SET_HOMING;
+    CLIENTS READ_HOMING "read homing" READ_HOMING;
     MANUAL_ADVANCED SET_PWM_MODE "PWM mode" SET_PWM, simulated NO_RIPPLE;
     MANUAL_ADVANCED READ_PWM_MODE "read PWM mode" READ_PWM, simulated NO_RIPPLE;
     CLIENTS SET_PWM_IDLE "PWM idle"
@@ -55,11 +53,8 @@ pub(super) const ROWS: &[Command] = rows! {
 };
 
 const LABEL: Simulated = Simulated::StoredOnly("a label that nothing else depends on");
-const CTRL_PINS: Simulated = Simulated::StoredOnly("the simulated models have no CTRL or auxiliary pins");
 const NO_RIPPLE: Simulated =
     Simulated::StoredOnly("the simulated bridge has no ripple: both modes give the same mean voltage");
-const HOMING: Simulated =
-    Simulated::StoredOnly("homing is a function of RoboClaw pins, which are not simulated");
 
 const SERIAL_TIMEOUT: Field = byte(
     name::TIMEOUT,

@@ -1,6 +1,6 @@
 //! Pins and streams: signals, digital outputs, priorities, serial ports (MCP manual 1.9).
 
-use super::super::command::{ClientUse, Command, Effect, Form, Simulated};
+use super::super::command::{ClientUse, Command, Effect, Form};
 use super::super::field::{byte, field};
 use super::super::name::{self, Name};
 use super::super::scale;
@@ -9,11 +9,11 @@ use crate::codes;
 use brushwork_values::{Field, Kind, Unit};
 
 pub(super) const ROWS: &[Command] = rows! {
-    CLIENTS SET_PIN_FUNCTIONS "pin functions" SET_PINS, simulated ROBOCLAW_PINS, client MCP_PINS;
-    CLIENTS READ_PIN_FUNCTIONS "read pin functions" READ_PINS, simulated ROBOCLAW_PINS, client MCP_PINS;
-    CLIENTS SET_CONTROL_SETTINGS "control input settings" SET_CONTROL, simulated ROBOCLAW_PINS,
+    CLIENTS SET_PIN_FUNCTIONS "pin functions" SET_PINS, client MCP_PINS;
+    CLIENTS READ_PIN_FUNCTIONS "read pin functions" READ_PINS, client MCP_PINS;
+    CLIENTS SET_CONTROL_SETTINGS "control input settings" SET_CONTROL,
         client MCP_PINS;
-    CLIENTS READ_CONTROL_SETTINGS "read control input settings" READ_CONTROL, simulated ROBOCLAW_PINS,
+    CLIENTS READ_CONTROL_SETTINGS "read control input settings" READ_CONTROL,
         client MCP_PINS;
     MANUAL_ADVANCED SET_DOUT_ACTION "digital output action"
         sets![byte(name::INDEX, "output, counted from 0"), ACTION], note "The manual prints no reply.";
@@ -35,8 +35,6 @@ pub(super) const ROWS: &[Command] = rows! {
         reads![counted(name::SIGNALS, VALUES, "one record for each signal")];
 };
 
-const ROBOCLAW_PINS: Simulated =
-    Simulated::StoredOnly("RoboClaw pins; the simulated inputs are those of the MCP, set by 143");
 const MCP_PINS: ClientUse = ClientUse::Superseded("the MCP has 137 to 147 for its pins");
 const OUTPUT_RANGE: &str =
     "The manual's text gives outputs up to 2068, its screens up to 32767; 32767 is followed.";

@@ -64,8 +64,9 @@ pub(super) const ROWS: &[Command] = rows! {
     MANUAL_ADVANCED READ_ESTOP_LOCK "read E-stop reset lock" reads![LOCK];
 };
 
-const CONTROL_INPUTS: Simulated =
-    Simulated::StoredOnly("the simulated inputs are those of the MCP, set by 143");
+const CONTROL_INPUTS: Simulated = Simulated::StoredOnly(
+    "sources disagree on what it sets: limits of the inputs, or the duty below which no current is measured",
+);
 const BLANKING: &str =
     "The RoboClaw manual of 2018 calls the number current blanking, with two values of two bytes.";
 
