@@ -181,7 +181,7 @@ fn tuned(manner: Manner, motor: Motor, request: Tuning) -> Report {
     let identity = link.connect().unwrap_or_else(|| panic!("{place}: {:?}", link.events));
     let generation = identity.generation;
     let subject = brushwork_mcp_client::subject(
-        models::lookup("roboclaw").expect("it is listed"),
+        models::identify(&identity.version_text).expect("it is a RoboClaw"),
         brushwork_mcp_client::layout_of(generation),
     );
     let held = |link: &Link| {

@@ -134,13 +134,19 @@ const ACTIONS: [Code; 23] = [
     code(0x8000, "e_stop", "E-Stop"),
 ];
 
-const fn code(raw: i64, key: &'static str, label: &'static str) -> Code {
+/// One named value.
+pub(crate) const fn code(raw: i64, key: &'static str, label: &'static str) -> Code {
     Code { raw, key, label }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::packet_serial::Generation;
+    use crate::roboclaw::{
+        ADDRESS_OR_SWITCHES, BATTERY_MODES, BAUD_OR_OPTIONS, CONTROL_MODES, CTRL_MODES, ControlPin,
+        IDLE_MODES,
+    };
     use brushwork_values::{by_key, by_raw};
 
     #[test]
@@ -158,8 +164,15 @@ mod tests {
             PWM_MODES,
             ESTOP_RESETS,
             ESTOP_RESETS_GENERATION_4,
+            CTRL_MODES,
+            IDLE_MODES,
+            CONTROL_MODES,
+            BATTERY_MODES,
+            BAUD_OR_OPTIONS,
+            ADDRESS_OR_SWITCHES,
         ];
-        for list in lists {
+        let pins = ControlPin::ALL.map(|pin| Generation::ALL.map(|generation| pin.functions(generation)));
+        for list in lists.into_iter().chain(pins.into_iter().flatten()) {
             for (index, code) in list.iter().enumerate() {
                 assert!(
                     list[..index].iter().all(|other| other.raw != code.raw && other.key != code.key),

@@ -6,6 +6,7 @@
 
 use brushwork_values::{Code, by_raw};
 
+use crate::codes::code;
 use crate::packet_serial::Generation;
 
 /// Functions of S3 in generations 1 and 2 (RoboClaw manual, edition of 2015, command 74).
@@ -80,7 +81,8 @@ pub static CTRL_MODES: &[Code] = &[
 ];
 
 /// Bit 7 of command 160. Sources disagree: two public libraries (2018-2025) call it "enable", one example brake or coast.
-pub static IDLE_MODES: &[Code] = &[code(0, "off", "Off"), code(1, "on", "On")];
+pub static IDLE_MODES: &[Code] =
+    &[code(0, "off", "0: idle mode off, or brake"), code(1, "on", "1: idle mode on, or coast")];
 
 /// What commands the motors: bits 0 and 1 of the configuration word.
 pub static CONTROL_MODES: &[Code] = &[
@@ -364,26 +366,9 @@ impl ControlPin {
     }
 }
 
-const fn code(raw: i64, key: &'static str, label: &'static str) -> Code {
-    Code { raw, key, label }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn keys_and_numbers_are_unique_within_each_list() {
-        let lists =
-            [CTRL_MODES, IDLE_MODES, CONTROL_MODES, BATTERY_MODES, BAUD_OR_OPTIONS, ADDRESS_OR_SWITCHES];
-        let pins = ControlPin::ALL.map(|pin| Generation::ALL.map(|generation| pin.functions(generation)));
-        for list in lists.into_iter().chain(pins.into_iter().flatten()) {
-            for (index, code) in list.iter().enumerate() {
-                let is_same = |other: &&Code| other.raw == code.raw || other.key == code.key;
-                assert_eq!(list[..index].iter().find(is_same), None, "{code:?}");
-            }
-        }
-    }
 
     #[test]
     fn every_named_function_but_none_does_something() {

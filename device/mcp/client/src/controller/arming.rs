@@ -12,10 +12,11 @@ use brushwork_link::device::controller::{ArmCheck, Line};
 use brushwork_link::exchange::{Exchange, ExchangeError};
 use brushwork_link::failure::Failure;
 use brushwork_link::transport::Stream;
-use brushwork_mcp_wire::packet_serial::name::{STATUS, TIMEOUT, TYPE};
+use brushwork_mcp_wire::packet_serial::name::{CONFIG, STATUS, TIMEOUT, TYPE};
 use brushwork_mcp_wire::packet_serial::status;
 use brushwork_mcp_wire::packet_serial::status::Condition;
 use brushwork_mcp_wire::packet_serial::{Generation, Read, commands, scale};
+use brushwork_mcp_wire::roboclaw::{ConfigWord, ControlMode};
 use brushwork_values::{Motor, Severity};
 use std::time::Duration;
 
@@ -101,10 +102,28 @@ fn watchdog(
     let Some(reply) = asker.ask_if_known(line, commands::READ_SERIAL_TIMEOUT)? else {
         return Ok(Err(unreadable()));
     };
+    if let Some(objection) = object_to_control_mode(asker, line)? {
+        return Ok(Err(objection));
+    }
     Ok(match reply.values.int(TIMEOUT) {
         0 => Err(object(McpCauseMessage::NoSerialTimeout, McpRemedyMessage::SetSerialTimeout)),
         raw => Ok(Duration::from_secs_f64(raw as f64 * scale::DECISECOND_S)),
     })
+}
+
+/// In R/C and analog mode S1 and S2 command the motors of a RoboClaw, and commands of packet serial move nothing (RoboClaw manual
+/// 2018, "USB Control").
+fn object_to_control_mode(speaker: Speaker, line: &mut Line<'_>) -> Result<Option<Objection>, ExchangeError> {
+    let Some(reply) = speaker.ask_if_known(line, commands::READ_CONFIG)? else {
+        return Ok(None);
+    };
+    let word = ConfigWord(u16::try_from(reply.values.int(CONFIG)).unwrap_or(0));
+    let signal = match word.mode() {
+        ControlMode::Rc => "R/C",
+        ControlMode::Analog => "analog",
+        ControlMode::SimpleSerial | ControlMode::PacketSerial => return Ok(None),
+    };
+    Ok(Some(object(McpCauseMessage::InputsInCharge { signal }, McpRemedyMessage::ChoosePacketSerial)))
 }
 
 /// Judges the streams of an MCP. A stream that is not known passes when every one that it could be has a time-out; the

@@ -6,6 +6,7 @@ use brushwork_link::settings::SettingValue;
 use brushwork_link::settings::SettingsImage;
 use brushwork_link::settings::SettingsTable;
 
+use super::pins::{self, Conflict, Lookup};
 use super::roboclaw;
 
 /// Rows of which the first must not be above the second.
@@ -21,6 +22,11 @@ const BRIDGE_CHANNELS: &str = "unit.bridge_channels";
 
 /// A script autorun delay below this switches autorun off (MCP manual 2.3.1, command 246).
 pub const SHORTEST_AUTORUN_MS: i64 = 100;
+
+/// Every contradiction among the settings that are known.
+pub fn conflicts(table: &SettingsTable, get: Lookup<'_>) -> Vec<Conflict> {
+    if roboclaw::is_of(table) { roboclaw::conflicts(table, get) } else { pins::conflicts(table, get) }
+}
 
 /// What `changes` lets happen by itself: an input that commands a motor, a script that starts at power up.
 pub(super) fn dangers(table: &SettingsTable, after: &SettingsImage, changes: &SettingsImage) -> Vec<Message> {

@@ -11,10 +11,9 @@ mod roboclaw;
 pub(crate) mod rows;
 mod template;
 
-pub use check::SHORTEST_AUTORUN_MS;
+pub use check::{SHORTEST_AUTORUN_MS, conflicts};
 pub use pins::{
-    Behind, Conflict, ConflictKind, PinMode, SignalShape, change_mode, conflicts, function_text, modes,
-    open_range,
+    Behind, Conflict, ConflictKind, PinMode, SignalShape, change_mode, function_text, modes, open_range,
 };
 pub use reference::{ReferenceForm, ReferenceRow, reference, reference_text};
 

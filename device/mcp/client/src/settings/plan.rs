@@ -1,6 +1,7 @@
 //! What is particular in a plan: when each command is sent, what its user should know, and how a step looks on the wire.
 
-use super::pins::{Conflict, conflicts};
+use super::check::conflicts;
+use super::pins::Conflict;
 use crate::messages::McpSettingsMessage;
 use crate::{layout_of, packet_address};
 use brushwork_link::Message;

@@ -7,8 +7,8 @@ use brushwork_mcp_wire::codes;
 use brushwork_mcp_wire::models::{Family, Model, Pin};
 use brushwork_mcp_wire::packet_serial::{Generation, Part, has_number};
 use brushwork_mcp_wire::roboclaw::ControlPin;
-use brushwork_values::Code;
 use brushwork_values::Unit as Measure;
+use brushwork_values::{Code, Motor};
 
 use crate::{layout_of, model_of};
 use brushwork_link::settings::SettingValue;
@@ -321,6 +321,18 @@ pub(crate) const fn at(commands: &'static [u8], fields: &'static [&'static str])
 }
 
 impl Form {
+    /// Whether one command writes a field of each instance.
+    fn writes_for_all(&self) -> bool {
+        match self.carrier {
+            FormCarrier::Wire { write: Some(write), .. } => {
+                write.commands.len() == 1 && write.fields.len() > 1 && !write.indexed
+            }
+            FormCarrier::Wire { write: None, .. }
+            | FormCarrier::LinkAddress { .. }
+            | FormCarrier::Hidden(_) => false,
+        }
+    }
+
     /// A form of all generations; narrow it with [`Form::only`].
     pub(crate) const fn wire(read: At, write: At) -> Self {
         Self::new(FormCarrier::Wire { read, write: Some(write) })
@@ -443,7 +455,7 @@ impl Template {
         let ours = self.family.is_none_or(|family| family == model.family);
         match self.form(layout_of(subject.generation)) {
             Some(form) if ours => self
-                .instances(subject)
+                .instances(form, subject)
                 .into_iter()
                 .map(|instance| self.row(form, subject, instance))
                 .collect(),
@@ -452,7 +464,7 @@ impl Template {
     }
 
     /// For each instance: its place in the commands from 0, what fills "{n}", and what it is called.
-    fn instances(&self, subject: &Unit<'_>) -> Vec<(usize, String, Option<Instance>)> {
+    fn instances(&self, form: &Form, subject: &Unit<'_>) -> Vec<(usize, String, Option<Instance>)> {
         let numbered = |count: usize, name: &dyn Fn(usize) -> String| {
             let one = |index: usize| {
                 let number = index + 1;
@@ -469,7 +481,13 @@ impl Template {
         };
         match self.repeat {
             Repeat::Once => vec![(0, String::new(), None)],
-            Repeat::Motors => numbered(subject.model.motors, &|index| format!("Motor {}", index + 1)),
+            Repeat::Motors => {
+                // A command for both motors is sent with what was read of the one that the board lacks.
+                let count = if form.writes_for_all() { Motor::BOTH.len() } else { subject.model.motors };
+                numbered(count, &|index| {
+                    on_board(format!("Motor {}", index + 1), index < subject.model.motors)
+                })
+            }
             Repeat::Levels => numbered(3, &|index| format!("Priority level {}", index + 1)),
             Repeat::Pins => numbered(subject.pins, &|index| subject.pin_name(index)),
             Repeat::Douts => numbered(subject.douts, &|index| format!("DOUT{}", index + 1)),
@@ -478,15 +496,21 @@ impl Template {
             Repeat::TtlStreams => named(&streams(2, subject.streams)),
             Repeat::RoboClawInputs => named(&[(0, "s1", "S1"), (1, "s2", "S2")]),
             Repeat::RoboClawPins => {
-                let has_outputs =
-                    layout_of(subject.generation) == Generation::Gen4 && subject.model.control_outputs > 0;
                 let is_there = |name: &str| match name {
-                    "D1" | "D2" => has_outputs,
+                    "D1" | "D2" => subject.model.control_outputs > 0,
                     input => subject.model.control_pins.contains(&input),
                 };
-                let there: Vec<_> =
-                    ROBOCLAW_PINS.iter().copied().filter(|(_, _, name)| is_there(name)).collect();
-                named(&there)
+                let inputs = 3;
+                let carried = if layout_of(subject.generation) == Generation::Gen4 {
+                    ROBOCLAW_PINS.len()
+                } else {
+                    inputs
+                };
+                let pin = |(index, key, name): &(usize, &str, &str)| {
+                    let name = on_board((*name).to_owned(), is_there(name));
+                    (*index, (*key).to_owned(), Some(Instance { number: index + 1, name }))
+                };
+                ROBOCLAW_PINS[..carried].iter().map(pin).collect()
             }
         }
     }
@@ -615,6 +639,11 @@ impl FormCarrier {
             Self::Hidden(reason) => Carrier::NoWireForm { reason },
         }
     }
+}
+
+/// The name of a part; one that the board lacks has its place in a command all the same.
+fn on_board(name: String, is_there: bool) -> String {
+    if is_there { name } else { format!("{name} (not on this board)") }
 }
 
 const ROBOCLAW_PINS: &[(usize, &str, &str)] =

@@ -282,6 +282,21 @@ pub static ASSUMED: &[Assumed] = &[
         "That a wrong address and a restore leave the address.",
         "The unit may be lost from the line.",
     ),
+    not(
+        "sim/src/controller/control/mod.rs",
+        "What the control pins, homing, the R/C and analog inputs and the battery cut-off of a RoboClaw do in detail.",
+        PINS,
+    ),
+    not(
+        "sim/src/controller/control/word.rs",
+        "That an MCP's configuration word tells its TTL UART1.",
+        "An MCP has other commands for what stands in it, and a write may end the connection.",
+    ),
+    not(
+        "sim/src/controller/firmware.rs",
+        "That a board of one channel acknowledges commands for motor 2.",
+        "A command for a motor is no question.",
+    ),
     not("sim/src/controller/inputs.rs", "How voltages and open pins read.", PINS),
     not("sim/src/controller/loader.rs", "What the loader does, and how long it takes.", FIRMWARE_UPDATE),
     not(
@@ -387,6 +402,11 @@ pub static ASSUMED: &[Assumed] = &[
         "They may run the motors at full speed.",
     ),
     asked("wire/src/packet_serial/table/legacy.rs", &["legacy_acknowledgement"]),
+    not(
+        "wire/src/roboclaw.rs",
+        "That D1 and D2 are the outputs CTRL1 and CTRL2, and that bit 3 inverts an input.",
+        PINS,
+    ),
     not("wire/src/script_image.rs", "What fills the last block of a script.", OURS),
 ];
 

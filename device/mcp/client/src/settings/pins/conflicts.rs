@@ -9,7 +9,6 @@ use crate::model_of;
 use crate::settings::pins::mode::PinMode;
 use crate::settings::pins::shape::SignalShape;
 use crate::settings::pins::values::{Lookup, PinValues, choice};
-use crate::settings::roboclaw;
 use brushwork_link::Message;
 use brushwork_link::settings::SettingValue;
 use brushwork_link::settings::SettingsTable;
@@ -53,11 +52,8 @@ pub enum ConflictKind {
     Overruled,
 }
 
-/// Every contradiction among the settings that are known, pin by pin.
+/// Every contradiction among the settings of an MCP that are known, pin by pin.
 pub fn conflicts(table: &SettingsTable, get: Lookup<'_>) -> Vec<Conflict> {
-    if roboclaw::is_of(table) {
-        return roboclaw::conflicts(table, get);
-    }
     let subject = table.subject();
     if model_of(subject).is_none() {
         return Vec::new();

@@ -3,7 +3,7 @@
 use brushwork_link::settings::SettingValue;
 
 /// Where the values of settings are looked up, by key.
-pub(in crate::settings) type Lookup<'a> = &'a dyn Fn(&str) -> Option<SettingValue>;
+pub(crate) type Lookup<'a> = &'a dyn Fn(&str) -> Option<SettingValue>;
 
 /// The settings of one pin, counted from 1, as some image or screen has them.
 #[derive(Clone, Copy)]
@@ -36,6 +36,6 @@ impl<'a> PinValues<'a> {
 }
 
 /// The choice that stands under a key.
-pub(in crate::settings) fn choice(get: Lookup<'_>, key: &str) -> Option<&'static str> {
+pub(crate) fn choice(get: Lookup<'_>, key: &str) -> Option<&'static str> {
     get(key)?.choice()
 }

@@ -132,11 +132,19 @@ fn arming_is_refused_when_the_controller_does_not_tell_its_time_out() {
 
 #[test]
 fn a_roboclaw_is_judged_by_its_one_serial_time_out() {
-    for (raw, timeout) in [(0, None), (5, Some(ms(500)))] {
+    // What 99 tells of the control mode: packet serial is 3, R/C 0 and analog 1.
+    for (raw, config, timeout) in [
+        (0, 0x63, None),
+        (5, 0x63, Some(ms(500))),
+        (5, 0x60, None),
+        (5, 0x61, None),
+        (5, 0x62, Some(ms(500))),
+    ] {
         let bus = Bus::shared();
         crate::tests::testing::unit::of_generation(&bus, brushwork_mcp_wire::packet_serial::Generation::Gen3);
         bus.lock().unwrap().mute = BTreeSet::from([number::READ_STREAMS, number::READ_PRIORITIES]);
         bus.lock().unwrap().set(number::READ_SERIAL_TIMEOUT, &[raw]);
+        bus.lock().unwrap().set(number::READ_CONFIG, &[config]);
         let mut link = Link::with(bus, DeviceOptions::default());
         link.run_for(ms(1_500));
         link.ask(Request::Arm(ArmScope::Pwm));
@@ -146,7 +154,13 @@ fn a_roboclaw_is_judged_by_its_one_serial_time_out() {
             _ => None,
         });
         assert_eq!(armed, timeout);
-        assert_eq!(link.has(|event| matches!(event, Event::ArmRefused { .. })), raw == 0);
+        link.events.retain(|(_, event)| matches!(event, Event::ArmRefused { .. }));
+        let sentences = link.sentences();
+        assert_eq!(sentences.is_empty(), timeout.is_some(), "{sentences:?}");
+        let is_of_mode = sentences.iter().any(|sentence| {
+            sentence.contains("S1 and S2 command the motors") && sentence.contains("mode=packet_serial")
+        });
+        assert_eq!(is_of_mode, config & 0b10 == 0, "{sentences:?}");
     }
 }
 

@@ -192,15 +192,12 @@ fn every_settable_field_is_carried_by_a_row_or_listed_as_not_a_setting() {
     }
 }
 
-/// Whether a field is of a motor, pin or output that the board does not have: it has no row, and is written as 0.
+/// Whether a field is of an output that the board does not have: all of its command are, and it is never written.
 fn is_of_a_missing_part(table: &SettingsTable, field: &str) -> bool {
     let model = crate::model_of(table.subject()).expect("the table is of a model");
     match field {
-        "s3" | "s4" | "s5" if model.family == Family::RoboClaw => {
-            !model.control_pins.contains(&field.to_uppercase().as_str())
-        }
-        "d1" | "d2" | "mode_1" | "mode_2" if model.family == Family::RoboClaw => model.control_outputs == 0,
-        field => field.ends_with("_m2") && model.motors == 1,
+        "mode_1" | "mode_2" => model.family == Family::RoboClaw && model.control_outputs == 0,
+        _ => false,
     }
 }
 

@@ -3,6 +3,7 @@
 
 use super::super::firmware::Firmware;
 use super::pins::PINS;
+use super::state::Homing;
 use crate::motion::MotionCommand;
 use brushwork_mcp_wire::packet_serial::Generation;
 use brushwork_mcp_wire::roboclaw::{ControlPin, PinFunction, SwitchFunction};
@@ -14,25 +15,6 @@ const LEAVING: Duration = Duration::from_secs(3);
 /// A quarter of full duty, where no setting says another.
 const DUTY_WITHOUT_SETTING: i16 = i16::MAX / 4;
 
-/// How far homing is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Homing {
-    /// This motor comes next, if it looks for its switch at all.
-    Next(Motor),
-    /// It runs forward off its switch.
-    Leaving(Motor, Duration),
-    /// It runs backward.
-    Seeking(Motor),
-    /// Nothing more is looked for.
-    #[default]
-    Done,
-}
-
-impl Homing {
-    /// As at power up.
-    pub(super) const START: Self = Self::Next(Motor::M1);
-}
-
 impl Firmware {
     /// Whether motors move by themselves.
     pub(super) fn is_homing(&self) -> bool {
@@ -40,7 +22,7 @@ impl Firmware {
     }
 
     /// One step of it.
-    pub(in super::super) fn run_homing(&mut self) {
+    pub(crate) fn run_homing(&mut self) {
         if self.is_held {
             self.control.homing = Homing::Done;
         }

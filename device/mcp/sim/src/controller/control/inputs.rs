@@ -1,6 +1,7 @@
 //! R/C and analog inputs on S1 and S2, and simple serial (RoboClaw manual 2018, "RC Control", "Analog Control", "Standard Serial").
 
 use super::super::firmware::Firmware;
+use super::state::Input;
 use crate::motion::{FULL_DUTY_RAW, MotionCommand, mixed_duties};
 use crate::settings::ControlInput;
 use brushwork_mcp_wire::roboclaw::{ConfigWord, ControlMode, ControlPin, PinFunction};
@@ -20,16 +21,6 @@ const ANALOG_MILLIVOLTS: Span = Span { min: 0.0, center: 1000.0, max: 2000.0 };
 /// A dead band of 100 % (RoboClaw manual 2018, command 76: tenths of a percent).
 const DEADBAND_FULL: f64 = 1000.0;
 
-/// One input.
-#[derive(Clone, Copy, Debug, Default)]
-pub(in super::super) struct Input {
-    /// The last command, -1 to 1; none before a signal came.
-    share: Option<f64>,
-    heard_at: Option<Duration>,
-    /// The first pulse, which is taken for the stick at rest.
-    center_microseconds: Option<f64>,
-}
-
 #[derive(Clone, Copy)]
 struct Span {
     min: f64,
@@ -39,7 +30,7 @@ struct Span {
 
 impl Firmware {
     /// Reads S1 and S2 and gives the motors what they say.
-    pub(in super::super) fn steer_by_inputs(&mut self, world: &mut World) {
+    pub(crate) fn steer_by_inputs(&mut self, world: &mut World) {
         let word = self.control.word;
         if word.is_serial() || self.is_homing() {
             return;
@@ -85,12 +76,12 @@ impl Firmware {
     }
 
     /// Whether single bytes on a stream command the motors.
-    pub(in super::super) fn hears_simple_serial(&self, stream: StreamIndex) -> bool {
+    pub(crate) fn hears_simple_serial(&self, stream: StreamIndex) -> bool {
         self.is_roboclaw() && stream != StreamIndex::Usb && self.control.mode() == ControlMode::SimpleSerial
     }
 
     /// A byte of simple serial: 0 stops both motors, 1 to 127 are motor 1 from full backward to full forward, 128 to 255 motor 2.
-    pub(in super::super) fn take_simple_serial(&mut self, byte: u8) {
+    pub(crate) fn take_simple_serial(&mut self, byte: u8) {
         let duty = |offset: i16, below: i16, above: i16| {
             let share = f64::from(offset) / f64::from(if offset < 0 { below } else { above });
             (share * f64::from(FULL_DUTY_RAW)).round() as i16

@@ -12,7 +12,7 @@ const CTRL_BRAKE: u8 = 3;
 
 impl Firmware {
     /// What an output does: S3, S4, S5, and CTRL1 and CTRL2 or D1 and D2, counted from 0.
-    pub(in super::super) fn output_function(&self, output: usize) -> PinFunction {
+    pub(crate) fn output_function(&self, output: usize) -> PinFunction {
         let Some(pin) = ControlPin::ALL.get(output).copied() else { return PinFunction::Disabled };
         let ctrl = match pin {
             ControlPin::S3 | ControlPin::S4 | ControlPin::S5 => return self.pin_function(pin).0,
@@ -35,7 +35,7 @@ impl Firmware {
     }
 
     /// Which of them are on.
-    pub(in super::super) fn control_outputs(&self, over_voltage: bool) -> Vec<bool> {
+    pub(crate) fn control_outputs(&self, over_voltage: bool) -> Vec<bool> {
         let is_on = |output: usize| match self.output_function(output) {
             PinFunction::VoltageClamp => over_voltage,
             PinFunction::Brake => {

@@ -9,14 +9,6 @@ use brushwork_values::Motor;
 /// Below this a pin reads low: between the highest low level of 0.8 V and the lowest high one of 2 V (RoboClaw data sheets).
 const LOW_VOLTS: f64 = 1.5;
 
-/// One pin as it was seen last.
-#[derive(Clone, Copy, Debug, Default)]
-pub(in super::super) struct Watched {
-    is_active: bool,
-    /// The motor ran forward when the pin became active.
-    was_forward: bool,
-}
-
 /// A pin whose function is set: its place among the world's pins, where the model has it, and its motor.
 pub(super) const PINS: [(ControlPin, &str, Option<Motor>); 3] = [
     (ControlPin::S3, "S3", None),
@@ -38,7 +30,7 @@ impl Firmware {
     }
 
     /// Reads the pins and does what they ask for.
-    pub(in super::super) fn update_control_pins(&mut self, world: &mut World) {
+    pub(crate) fn update_control_pins(&mut self, world: &mut World) {
         let mut triggers = Triggers::default();
         let mut is_held = false;
         for (at, (pin, name, motor)) in PINS.into_iter().enumerate() {
