@@ -26,6 +26,7 @@ messages! {
         NoSuchInput { pin: &'static str, kind: String, model: &'static str } "{pin} cannot be {kind} on the {model}; it measures nothing instead.",
         Divided { title: String, value: String, one: String } "{title} becomes {value}, since \"{one}\" counted for it before.",
         Joined { title: String, lost: String, kept: String, one: String, effect: Message } "{title} {lost} has no setting of its own there: {kept} counts for it too, as \"{one}\". {effect}",
+        NoSuchChoice { title: String, value: String, instead: String } "{title}: this firmware does not have {value}. {instead} is used instead, and what {value} did is done by nothing.",
         NoAutomaticReset "This firmware has no automatic E-Stop reset. Hardware is used instead: an emergency stop lasts until the hardware is reset, and does not end by itself.",
     }
 }

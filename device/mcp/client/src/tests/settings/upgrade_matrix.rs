@@ -162,7 +162,10 @@ impl<'t> Upgrade<'t> {
     /// Whether a row over there holds the value of one of the profile.
     fn holds(&self, key: &str, row: &Row) -> bool {
         let held = self.to.row(key).zip(self.fitted.settings.get(key));
-        held.is_some_and(|(there, now)| there.format(now) == row.format(self.value(row)))
+        let value = self.value(row);
+        // A choice means what its key says; the words beside it may be longer where there are more choices.
+        let is_same_choice = |now: SettingValue| matches!(now, SettingValue::Choice(_)) && now == value;
+        held.is_some_and(|(there, now)| is_same_choice(now) || there.format(now) == row.format(value))
     }
 
     /// What became of one setting; one that changed or went away unsaid fails the test.
