@@ -17,6 +17,7 @@ use brushwork_tests::program::{Child, Ending, Program};
 use brushwork_tests::simulated::{OnPty, PATIENT_TIME_OUT, is_at_rest, is_driven};
 use brushwork_tests::wait::{self, LIMIT};
 use brushwork_tests::{foreign, workspace};
+use rustix::process::Signal;
 use serde_json::Value;
 
 const BRUSHWORK: &str = env!("CARGO_BIN_EXE_brushwork-for-tests");
@@ -260,7 +261,7 @@ fn is_stopped_by_the_controller(signal: &str) {
         // Whatever is looked at below was alive until then, or had stopped the motors itself.
         let was_alive = program.is_running() && controller.look(is_driven);
         // Its guardian would be quicker. A lost machine takes both.
-        guardian::of(program.id()).into_iter().for_each(guardian::kill);
+        guardian::signal(program.id(), Signal::KILL);
         program.signal(signal);
         let off = controller.wait_until_off();
         println!("SIG{signal}: {off:?}, time-out {FACTORY_TIME_OUT:?}");

@@ -130,10 +130,11 @@ pub fn of(program: u32) -> Vec<u32> {
     of_this.filter_map(|process| process.file_name().to_str()?.parse().ok()).collect()
 }
 
-/// Ends a process at once.
-pub fn kill(process: u32) {
-    let number = i32::try_from(process).ok().and_then(Pid::from_raw);
-    number.map(|number| kill_process(number, Signal::KILL));
+/// Sends a signal to the guardians of a process.
+pub fn signal(program: u32, signal: Signal) {
+    for number in of(program).into_iter().filter_map(|number| Pid::from_raw(i32::try_from(number).ok()?)) {
+        kill_process(number, signal).expect("it is there");
+    }
 }
 
 #[cfg(target_os = "linux")]

@@ -5,6 +5,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use crate::guardian;
 use brushwork_core::tune::file;
 use brushwork_core::tune::law::Report;
 use brushwork_mcp_sim::controller::ControllerConfig;
@@ -19,6 +20,7 @@ use brushwork_tests::wait::LIMIT;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::report::Verdict;
 use brushwork_values::Motor;
+use rustix::process::Signal;
 use tempfile::TempDir;
 
 const BRUSHWORK: &str = env!("CARGO_BIN_EXE_brushwork-for-tests");
@@ -207,9 +209,12 @@ fn a_run_that_this_computer_was_too_late_for_says_so_and_ends_as_no_signal_does(
     let before = bench.held();
     let mut program = bench.tune(&["--dry-run"]);
     program.wait_for_error("Measuring the motor", LIMIT);
+    // Its guardian is as late as the rest of the computer, and sees that; one that stays awake ends a program that stands still.
+    guardian::signal(program.id(), Signal::STOP);
     program.signal("STOP");
     std::thread::sleep(STALLED);
     program.signal("CONT");
+    guardian::signal(program.id(), Signal::CONT);
     let ending = program.finish(LIMIT);
     assert!([Some(TUNED), Some(TUNED_WITH_WARNINGS), Some(REFUSED)].contains(&code(&ending)), "{ending:?}");
     if code(&ending) == Some(REFUSED) {
