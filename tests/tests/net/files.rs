@@ -18,7 +18,6 @@ use tempfile::TempDir;
 use crate::folder;
 
 const DONE: i32 = 0;
-#[cfg(unix)]
 const DIFFERENT: i32 = 6;
 
 fn file(name: &str) -> PathBuf {
