@@ -59,11 +59,11 @@ fn stop_line(line: &LineArgs, interrupt: &Interrupt) -> Result<LineStop, Exit> {
             .map_err(|error| Exit::NoLink.saying(error))
     };
     let on_can = matches!(target, ConnectTarget::Can { .. });
-    let named = if target.family() == FamilyChoice::AUTO { line.family } else { target.family() };
-    let is_unknown = session::family_at(&target, named) == FamilyChoice::AUTO && !on_can;
     let mut session = open(line.family)?;
     let mut found = stop_and_find(&session, on_can, interrupt)?;
-    if is_unknown && asked == Addresses::Scan {
+    let named = if target.family() == FamilyChoice::AUTO { line.family } else { target.family() };
+    let is_unknown = || !on_can && session::family_at(&target, named) == FamilyChoice::AUTO;
+    if found.is_err() && asked == Addresses::Scan && is_unknown() {
         // When the line was opened it was not searched for all units that these families can have on it.
         for family in family::families().iter().filter(|family| family.stopped_addresses().is_empty()) {
             if found.is_err() {
