@@ -123,6 +123,7 @@ messages! {
         OneLeftOut { model: &'static str, generation: FirmwareGeneration, thing: String, named: String } "The {model} with firmware {generation} has no place for {thing}: its setting is left out (not at the default: {named}).",
         DefaultsLeftOut { model: &'static str, generation: FirmwareGeneration, thing: String, count: usize } "The {model} with firmware {generation} has no place for {thing}: its {count} settings are left out (at the default).",
         SomeLeftOut { model: &'static str, generation: FirmwareGeneration, thing: String, count: usize, named: String } "The {model} with firmware {generation} has no place for {thing}: its {count} settings are left out (not at the default: {named}).",
+        NoSuchChoice { title: String, value: String, instead: String } "{title}: {value} does not exist there. {instead} is used instead, so that nothing does what {value} did.",
         Follows { thing: String, what: Message } "{thing}: {what}",
         Besides { model: &'static str, generation: FirmwareGeneration, named: String } "The {model} with firmware {generation} has settings that the profile does not know. They stay as they are: {named}.",
         OneSided { groups: String } "Not compared, since one side alone has them: some of {groups}.",

@@ -26,7 +26,6 @@ messages! {
         NoSuchInput { pin: &'static str, kind: String, model: &'static str } "{pin} cannot be {kind} on the {model}; it measures nothing instead.",
         Divided { title: String, value: String, one: String } "{title} becomes {value}, since \"{one}\" counted for it before.",
         Joined { title: String, lost: String, kept: String, one: String, effect: Message } "{title} {lost} has no setting of its own there: {kept} counts for it too, as \"{one}\". {effect}",
-        NoSuchChoice { title: String, value: String, instead: String } "{title}: this firmware does not have {value}. {instead} is used instead, and what {value} did is done by nothing.",
         NoAutomaticReset "This firmware has no automatic E-Stop reset. Hardware is used instead: an emergency stop lasts until the hardware is reset, and does not end by itself.",
     }
 }
@@ -68,7 +67,7 @@ messages! {
         NeverHomes { motor: usize, missing: &'static str } "Motor {motor} is to look for its home switch at power up and never does: its {missing}. Set it.",
         NoInputRange { input: String, min: i64, center: i64, max: i64 } "{input} gives no usable command: its center {center} is not between its minimum {min} and its maximum {max}.",
         BytesCommand "From the next power up single bytes on S1 command the motors, and packet serial goes on over USB alone.",
-        InputsCommand { signal: &'static str, options: &'static str, switches: &'static str } "From the next power up {signal} on S1 and S2 command the motors, packet serial goes on over USB alone, and baud rate and address are read as R/C options and switches: {options}; {switches}.",
+        InputsCommand { signal: &'static str, options: String, switches: String } "From the next power up {signal} on S1 and S2 command the motors, packet serial goes on over USB alone, and baud rate and address are read as R/C options and switches: {options}; {switches}.",
         RunsOn "With MCU and without the R/C time-out the motors go on with the last pulse when the pulses stop.",
         Homes { motor: usize, timeout_s: f64 } "Motor {motor} moves by itself at each power up: forward off its home switch for at most 3 s, then backward until it meets it, for at most {timeout_s:.1} s.",
         TurnedRound { what: Message } "{what}: if they do not go the same way then, a closed loop runs away. Try it with little current.",

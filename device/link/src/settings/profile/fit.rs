@@ -155,7 +155,10 @@ impl<'f> Fitter<'f> {
             return;
         }
         let (fitted, why) = there.repair(value);
-        if let Some(why) = why {
+        if is_lacking(there, value) {
+            let (title, value, instead) = (there.title(), row.format(value), there.format(fitted));
+            self.changes.push(ProfileMessage::NoSuchChoice { title, value, instead }.into());
+        } else if let Some(why) = why {
             self.changes.push(why);
         } else if !is_same_number(value, fitted) {
             let (title, value, step) = (there.title(), row.format(value), there.format(fitted));
@@ -235,6 +238,14 @@ impl<'f> Fitter<'f> {
             let besides = ProfileMessage::Besides { model: to.model.name, generation: to.generation, named };
             self.changes.push(besides.into());
         }
+    }
+}
+
+/// Whether the other row has no such choice.
+fn is_lacking(there: &Row, value: SettingValue) -> bool {
+    match (there.kind, value) {
+        (Kind::Choice(codes), SettingValue::Choice(key)) => codes.iter().all(|code| code.key != key),
+        _ => false,
     }
 }
 

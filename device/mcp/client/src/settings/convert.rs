@@ -98,21 +98,6 @@ pub(super) fn impossible_reset(there: &Row, value: SettingValue) -> Option<Messa
     is_lacking.then(|| McpSettingsMessage::NoAutomaticReset.into())
 }
 
-/// What a row gets in place of a choice that only the profile's controller has.
-pub(super) fn impossible_choice(
-    fit: &Fit<'_>,
-    there: &Row,
-    value: SettingValue,
-) -> Option<(SettingValue, Message)> {
-    let (SettingValue::Choice(key), Kind::Choice(codes)) = (value, there.kind) else { return None };
-    if codes.iter().any(|code| code.key == key) {
-        return None;
-    }
-    let own = fit.from.row(&there.key)?;
-    let (title, value, instead) = (there.title(), own.format(value), there.format(there.default));
-    Some((there.default, McpSettingsMessage::NoSuchChoice { title, value, instead }.into()))
-}
-
 /// What changes in the motion where a setting has no place; nothing of one that moves, stops and limits nothing by itself.
 pub(super) fn without(row: &Row) -> Option<Message> {
     Some(

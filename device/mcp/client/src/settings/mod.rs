@@ -161,8 +161,7 @@ impl FamilySettings for McpSettings {
         if let Some(why) = convert::impossible_reset(there, value) {
             return Some((SettingValue::Choice("hardware"), why));
         }
-        let of_pin = fit::impossible_type(fit, there, value).map(|why| (SettingValue::Choice("none"), why));
-        of_pin.or_else(|| convert::impossible_choice(fit, there, value))
+        fit::impossible_type(fit, there, value).map(|why| (SettingValue::Choice("none"), why))
     }
 
     fn conversions(&self, fit: &Fit<'_>) -> Vec<Conversion> {
