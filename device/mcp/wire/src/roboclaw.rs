@@ -156,6 +156,12 @@ pub enum ControlMode {
     PacketSerial,
 }
 
+/// The words of those that are chosen.
+fn listed(words: &[(bool, &'static str)], none: &str) -> String {
+    let chosen: Vec<&str> = words.iter().filter(|(is_chosen, _)| *is_chosen).map(|(_, word)| *word).collect();
+    if chosen.is_empty() { none.to_owned() } else { chosen.join(", ") }
+}
+
 /// The configuration word of commands 98 and 99.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ConfigWord(pub u16);
@@ -247,6 +253,21 @@ impl ConfigWord {
     /// In R/C mode the motors stop when the pulses do, also with [`ConfigWord::is_for_mcu`].
     pub fn has_rc_timeout(self) -> bool {
         self.has_option(9)
+    }
+
+    /// What bits 5 to 7 choose in R/C and analog mode, in words.
+    pub fn options_text(self) -> String {
+        let options = [
+            (self.has_mixing(), "mixing"),
+            (self.has_exponential(), "exponential"),
+            (self.is_for_mcu(), "MCU"),
+        ];
+        listed(&options, "no option")
+    }
+
+    /// What bits 8 and 9 choose in R/C and analog mode, in words.
+    pub fn switches_text(self) -> String {
+        listed(&[(self.has_rc_flip(), "flip switch"), (self.has_rc_timeout(), "time-out")], "no switch")
     }
 
     /// Encoder 1 serves motor 2 and the other way round.
@@ -408,5 +429,19 @@ mod tests {
         assert_eq!(word.with_baud_bps(12_345), word, "it has no number");
         assert_eq!(ConfigWord(0x001C).battery(), 7);
         assert!(word.with_multi_unit(true).0 & 0x8000 != 0);
+    }
+
+    #[test]
+    fn labels_name_the_options_and_switches_that_the_bits_are() {
+        for code in BAUD_OR_OPTIONS {
+            let options = ConfigWord((code.raw as u16) << 5).options_text();
+            assert_eq!(code.label, format!("{} baud; R/C: {options}", code.key));
+        }
+        for code in ADDRESS_OR_SWITCHES {
+            let switches = ConfigWord((code.raw as u16) << 8).switches_text();
+            let label = format!("{}; R/C: {switches}", code.key);
+            // No two labels are alike but for the address, so one of them leaves out that no switch is on.
+            assert!(code.label == label || code.raw == 4 && code.label == code.key, "{label}");
+        }
     }
 }

@@ -12,6 +12,7 @@ use brushwork_mcp_wire::codes::ENCODER_PIN_NONE;
 use brushwork_mcp_wire::models::{self, MODELS};
 use brushwork_mcp_wire::packet_serial::status::{Condition, Conditions, StatusIndicator};
 use brushwork_mcp_wire::packet_serial::{Effect, Generation, lookup, number};
+use brushwork_mcp_wire::roboclaw::ConfigWord;
 use brushwork_tuning::tune::Method;
 use brushwork_values::{Code, Motor};
 
@@ -245,15 +246,21 @@ pub const HELP_COMMANDS: HelpPage =
 /// The language of its scripts.
 pub const HELP_MCL: HelpPage = HelpPage { title: "MCL Reference", group: 1, is_searched: true };
 
-/// What the values of a row mean in a control mode: the part of their labels before or behind the word for the other modes.
+/// What the values of the baud rate's or the address's row mean in a control mode.
 fn of_mode(row: &Row, mode: &str) -> Option<Vec<(SettingValue, String)>> {
     let Kind::Choice(codes) = row.kind else { return None };
     let is_serial = matches!(mode, "simple_serial" | "packet_serial");
+    let is_address = row.pattern.ends_with("address");
     let label = |code: &Code| {
-        let (serial, inputs) = code.label.split_once("; R/C: ").unwrap_or((code.label, "no switch"));
-        let mut words = (if is_serial { serial } else { inputs }).to_owned();
+        let raw = u16::try_from(code.raw).unwrap_or_default();
+        let mut words = match (is_serial, is_address) {
+            (true, true) => code.key.to_owned(),
+            (true, false) => format!("{} baud", code.key),
+            (false, true) => ConfigWord(raw << 8).switches_text(),
+            (false, false) => ConfigWord(raw << 5).options_text(),
+        };
         // Address numbers of four and more differ from the others in serial modes alone.
-        if !is_serial && code.raw > 3 && row.pattern.ends_with("address") {
+        if !is_serial && is_address && raw > 3 {
             words.push_str(" (and bit 10)");
         }
         words[..1].make_ascii_uppercase();

@@ -4,6 +4,10 @@ use crate::messages::RoboClawMessage;
 use brushwork_link::Message;
 use brushwork_link::settings::{SettingValue, SettingsImage, SettingsTable};
 use brushwork_mcp_wire::models::Family;
+use brushwork_mcp_wire::roboclaw::{
+    ADDRESS_OR_SWITCHES, BAUD_OR_OPTIONS, CONTROL_MODES, ConfigWord, ControlMode,
+};
+use brushwork_values::Code;
 
 use super::pins::{Conflict, ConflictKind, Lookup, choice};
 use crate::model_of;
@@ -102,33 +106,27 @@ fn inputs_command(get: Lookup<'_>, changes: &SettingsImage) -> Option<RoboClawMe
         "simple_serial" => return Some(RoboClawMessage::BytesCommand),
         _ => return None,
     };
-    let options = choice(get, OPTIONS).map_or("unknown", |key| named_options(key));
-    let switches = choice(get, SWITCHES).map_or("unknown", |key| named_switches(key));
+    let words = |of: fn(ConfigWord) -> String| inputs_word(get).map_or_else(|| "unknown".to_owned(), of);
+    let (options, switches) = (words(ConfigWord::options_text), words(ConfigWord::switches_text));
     Some(RoboClawMessage::InputsCommand { signal, options, switches })
 }
 
-/// What a baud rate stands for in R/C and analog mode.
-fn named_options(key: &str) -> &'static str {
-    named(brushwork_mcp_wire::roboclaw::BAUD_OR_OPTIONS, key)
-}
-
-fn named_switches(key: &str) -> &'static str {
-    named(brushwork_mcp_wire::roboclaw::ADDRESS_OR_SWITCHES, key)
-}
-
-/// What stands behind "R/C:" in a label.
-fn named(codes: &'static [brushwork_values::Code], key: &str) -> &'static str {
-    let label = codes.iter().find(|code| code.key == key).map(|code| code.label);
-    label.and_then(|label| label.split_once("R/C: ")).map_or("no switch", |(_, named)| named)
+/// What the configuration word says of the inputs.
+fn inputs_word(get: Lookup<'_>) -> Option<ConfigWord> {
+    let raw = |key: &str, codes: &[Code]| {
+        let chosen = choice(get, key)?;
+        u16::try_from(codes.iter().find(|code| code.key == chosen)?.raw).ok()
+    };
+    let (mode, options) = (raw(MODE, CONTROL_MODES)?, raw(OPTIONS, BAUD_OR_OPTIONS)?);
+    Some(ConfigWord(mode | options << 5 | raw(SWITCHES, ADDRESS_OR_SWITCHES)? << 8))
 }
 
 /// With MCU and no time-out a motor goes on for ever on the last pulse.
 fn runs_on(get: Lookup<'_>, changes: &SettingsImage) -> Option<RoboClawMessage> {
     let is_new = [MODE, OPTIONS, SWITCHES].iter().any(|key| changes.get(key).is_some());
-    let is_rc = choice(get, MODE)? == "rc";
-    let is_mcu = named_options(choice(get, OPTIONS)?).contains("MCU");
-    let has_timeout = named_switches(choice(get, SWITCHES)?).contains("time-out");
-    (is_new && is_rc && is_mcu && !has_timeout).then_some(RoboClawMessage::RunsOn)
+    let word = inputs_word(get)?;
+    let goes_on = word.mode() == ControlMode::Rc && word.is_for_mcu() && !word.has_rc_timeout();
+    (is_new && goes_on).then_some(RoboClawMessage::RunsOn)
 }
 
 /// A motor that looks for its home switch at power up.
