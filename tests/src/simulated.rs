@@ -46,11 +46,7 @@ impl OnPty {
     /// A controller with a time-out so long that it is not what stops the motors in a test.
     #[must_use]
     pub fn patient(generation: Generation) -> Self {
-        let mut config = ControllerConfig { generation, ..ControllerConfig::default() };
-        let mut settings = Settings::factory(config.model, config.address.get());
-        settings.streams[0].timeout_ms = PATIENT_TIME_OUT.as_millis() as u32;
-        config.settings = Some(settings);
-        Self::start_with(config, StreamIndex::Usb)
+        Self::start_with(patient(generation), StreamIndex::Usb)
     }
 
     /// Any controller, on any of its ports.
@@ -244,6 +240,16 @@ impl Off {
         assert!(self.silent_for >= time_out, "not the time-out stopped the motors: {self:?}");
         assert!(self.driven_in_silence <= time_out + RAMP, "{self:?} with a time-out of {time_out:?}");
     }
+}
+
+/// An MCP266 that goes on for a minute when nobody speaks to it over USB.
+#[must_use]
+pub fn patient(generation: Generation) -> ControllerConfig {
+    let mut config = ControllerConfig { generation, ..ControllerConfig::default() };
+    let mut settings = Settings::factory(config.model, config.address.get());
+    settings.streams[0].timeout_ms = PATIENT_TIME_OUT.as_millis() as u32;
+    config.settings = Some(settings);
+    config
 }
 
 /// How long the line of a controller has been silent.

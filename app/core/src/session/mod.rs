@@ -248,15 +248,18 @@ fn spawn(
 mod tests {
     use super::*;
 
-    #[test]
-    fn on_a_controllers_own_usb_no_other_family_is_looked_for() {
-        brushwork_link::install(&[&brushwork_mcp_client::McpDriver]);
-        let port = |product: &str| PortInfo {
+    fn port(product: &str) -> PortInfo {
+        PortInfo {
             name: "/dev/ttyACM7".to_owned(),
             is_usb: true,
             product: Some(product.to_owned()),
             ..PortInfo::default()
-        };
+        }
+    }
+
+    #[test]
+    fn on_a_controllers_own_usb_no_other_family_is_looked_for() {
+        brushwork_link::install(&[&brushwork_mcp_client::McpDriver]);
         let target: ConnectTarget = "/dev/ttyACM7".parse().unwrap();
         let found = |product| settled(&target, FamilyChoice::AUTO, &[port(product)]).key();
         assert_eq!(found("MCP266 2x60A"), "mcp");
@@ -266,12 +269,6 @@ mod tests {
     #[test]
     fn a_port_that_calls_itself_a_loader_is_told_as_one_and_not_opened() {
         brushwork_link::install(&[&brushwork_mcp_client::McpDriver]);
-        let port = |product: &str| PortInfo {
-            name: "/dev/ttyACM7".to_owned(),
-            is_usb: true,
-            product: Some(product.to_owned()),
-            ..PortInfo::default()
-        };
         let target: ConnectTarget = "/dev/ttyACM7".parse().unwrap();
         assert!(loader_of(&target, &[port("MCP266 2x60A")]).is_none());
         let sentence = loader_of(&target, &[port("MCP266ASTULDR")]).unwrap().to_string();

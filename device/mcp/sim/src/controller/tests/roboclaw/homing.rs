@@ -24,6 +24,16 @@ fn homing(generation: Generation, duty_raw: i64, timeout_s: i64) -> Bench {
     bench
 }
 
+/// A home switch of motor 1 that it does not reach.
+fn wire_far_switch(bench: &mut Bench) {
+    bench.apply(&WorldAction::WireSwitch {
+        motor: Motor::M1,
+        switch: SwitchKind::Home,
+        pin: Some(S4),
+        trips_at_radians: Some(-1_000.0),
+    });
+}
+
 #[test]
 fn the_motor_looks_backward_for_its_switch_at_power_up_and_zeroes_its_encoder_there() {
     for generation in [Gen3, Gen4] {
@@ -71,12 +81,7 @@ fn a_switch_that_never_opens_ends_the_way_forward_after_three_seconds() {
 #[test]
 fn the_time_out_ends_it_and_the_motor_stands() {
     let mut bench = homing(Gen3, 3_000, 2);
-    bench.apply(&WorldAction::WireSwitch {
-        motor: Motor::M1,
-        switch: SwitchKind::Home,
-        pin: Some(S4),
-        trips_at_radians: Some(-1_000.0),
-    });
+    wire_far_switch(&mut bench);
     save_and_restart(&mut bench);
     bench.wait(Duration::from_millis(1_900));
     assert!(duty(&mut bench) < 0.0);
@@ -87,12 +92,7 @@ fn the_time_out_ends_it_and_the_motor_stands() {
 #[test]
 fn motor_2_looks_for_its_switch_after_motor_1() {
     let mut bench = homing(Gen3, 3_000, 2);
-    bench.apply(&WorldAction::WireSwitch {
-        motor: Motor::M1,
-        switch: SwitchKind::Home,
-        pin: Some(S4),
-        trips_at_radians: Some(-1_000.0),
-    });
+    wire_far_switch(&mut bench);
     set_pins(&mut bench, [0, HOME_AUTO, HOME_AUTO]);
     bench.ask(commands::SET_HOMING_M2, &[3_000, 600]);
     save_and_restart(&mut bench);
