@@ -72,7 +72,7 @@ pub fn install() {
 /// Runs the program: a command, or the window where none is given.
 #[must_use]
 pub fn run() -> ExitCode {
-    let mut words = std::env::args().skip(1);
+    let mut words = std::env::args_os().skip(1);
     if words.next().is_some_and(|word| word == guardian::COMMAND) {
         return brushwork_cli::guardian::run(words);
     }

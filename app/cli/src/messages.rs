@@ -65,6 +65,7 @@ messages! {
         NotConfirmedByAll "The stop was written to all of them, but nobody confirmed it. If a motor runs, cut its power.",
         NotConfirmed { seconds: u64 } "Stop was sent, but the controller did not confirm it within {seconds} s. Cut the motor power.",
         NoCtrlC { error: String } "Could not take over Ctrl-C, without which motors could not be stopped: {error}.",
+        GuardianByHand "`brushwork guardian` is started by the program itself, for a line that it arms.",
         NoQpps "The motor's QPPS is 0, so a position move would not move. Give --speed-limit or set QPPS first.",
         OtherFamily { title: String, family: &'static str } "{title} is no {family}; its commands are put together in the window's Traffic screen.",
         TerminalOf { title: String, unit: String, port: String, mode: String, protocol: String } "{title} {unit} on {port}: {mode}, {protocol}.",

@@ -11,6 +11,7 @@ use crate::capability::{CapabilityBook, KeepsCapabilities};
 use crate::clock::Clock;
 use crate::device::StopBytes;
 use crate::transport::Transport;
+use std::io;
 use std::process::Stdio;
 use std::sync::Arc;
 use std::time::Duration;
@@ -290,7 +291,10 @@ impl Exchange {
     }
 
     /// A second way to write to the line, for another process.
-    pub fn second_way(&mut self) -> Option<Stdio> {
+    ///
+    /// # Errors
+    /// As [`Transport::second_way`].
+    pub fn second_way(&self) -> io::Result<Stdio> {
         self.transport.second_way()
     }
 

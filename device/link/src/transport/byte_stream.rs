@@ -1,5 +1,6 @@
 //! A two-way stream of bytes to a controller, and why bytes could not be moved.
 
+use std::io;
 use std::process::Stdio;
 use std::sync::Arc;
 use std::time::Duration;
@@ -31,9 +32,12 @@ pub trait Transport: Send {
         Duration::from_millis(60)
     }
 
-    /// Another way to write to the same far end, for a second process, which has it as its standard input; `None` where there is none.
-    fn second_way(&mut self) -> Option<Stdio> {
-        None
+    /// Another way to write to the same far end, for a second process, which has it as its standard input.
+    ///
+    /// # Errors
+    /// There is none, or the system gave none.
+    fn second_way(&self) -> io::Result<Stdio> {
+        Err(io::Error::new(io::ErrorKind::Unsupported, "a line of this kind is open to one program alone"))
     }
 }
 
@@ -61,15 +65,15 @@ pub enum TransportError {
         action: &'static str,
         /// The operating system's error.
         #[source]
-        source: Arc<std::io::Error>,
+        source: Arc<io::Error>,
     },
 }
 
 impl TransportError {
     /// Sorts an operating system error into "gone" and everything else.
     #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
-    pub(crate) fn from_io(action: &'static str, error: std::io::Error) -> Self {
-        use std::io::ErrorKind as Kind;
+    pub(crate) fn from_io(action: &'static str, error: io::Error) -> Self {
+        use io::ErrorKind as Kind;
         match error.kind() {
             Kind::BrokenPipe
             | Kind::ConnectionReset

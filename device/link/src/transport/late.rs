@@ -40,4 +40,8 @@ impl Transport for Late {
     fn latency(&self) -> Duration {
         self.latency
     }
+
+    fn second_way(&self) -> std::io::Result<std::process::Stdio> {
+        self.inner.second_way()
+    }
 }

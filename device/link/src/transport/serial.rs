@@ -5,6 +5,7 @@ use super::error::OpenError;
 use super::refused;
 use serialport::{ClearBuffer, ErrorKind, SerialPort};
 use std::io;
+#[cfg(unix)]
 use std::process::Stdio;
 use std::time::Duration;
 
@@ -14,7 +15,8 @@ pub struct SerialTransport {
     path: String,
     byte_time: Duration,
     timeout: Duration,
-    second: Option<Stdio>,
+    #[cfg(unix)]
+    second: io::Result<std::os::fd::OwnedFd>,
 }
 
 impl SerialTransport {
@@ -24,11 +26,19 @@ impl SerialTransport {
     /// line, such as pseudo-terminals, answer ENOTTY, which is no error.
     pub fn open(path: &str, baud: u32) -> Result<Self, OpenError> {
         // Before the port is taken for this program alone. That it cannot be had is told when something is armed.
+        #[cfg(unix)]
         let second = second_way(path);
         let mut port = open_port(path, baud).map_err(|error| explain(path, baud, &error))?;
         let _ = port.write_request_to_send(true);
         let byte_time = Duration::from_secs(10) / baud.max(1);
-        Ok(Self { port, path: path.to_owned(), byte_time, timeout: WRITE_TIMEOUT, second })
+        Ok(Self {
+            port,
+            path: path.to_owned(),
+            byte_time,
+            timeout: WRITE_TIMEOUT,
+            #[cfg(unix)]
+            second,
+        })
     }
 
     /// Sets the wait of the next read or write; a system call on some systems, so only when it changes.
@@ -86,25 +96,20 @@ impl Transport for SerialTransport {
         Some(self.byte_time)
     }
 
-    fn second_way(&mut self) -> Option<Stdio> {
-        self.second.take()
+    #[cfg(unix)]
+    fn second_way(&self) -> io::Result<Stdio> {
+        match &self.second {
+            Ok(file) => Ok(file.try_clone()?.into()),
+            Err(error) => Err(io::Error::new(error.kind(), error.to_string())),
+        }
     }
 }
 
 /// The port as a plain file. It does not wait for a carrier, nor does it become this program's terminal.
 #[cfg(unix)]
-fn second_way(path: &str) -> Option<Stdio> {
+fn second_way(path: &str) -> io::Result<std::os::fd::OwnedFd> {
     use rustix::fs::{Mode, OFlags, open};
-    let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::NONBLOCK | OFlags::CLOEXEC;
-    let file = open(path, flags, Mode::empty()).ok()?;
-    // A port that another program holds would be kept from being opened anew.
-    rustix::termios::isatty(&file).then(|| file.into())
-}
-
-/// A port of Windows can be opened once.
-#[cfg(not(unix))]
-fn second_way(_path: &str) -> Option<Stdio> {
-    None
+    Ok(open(path, OFlags::RDWR | OFlags::NOCTTY | OFlags::NONBLOCK | OFlags::CLOEXEC, Mode::empty())?)
 }
 
 fn open_port(path: &str, baud: u32) -> serialport::Result<Box<dyn SerialPort>> {

@@ -122,9 +122,8 @@ impl Transport for TcpTransport {
     }
 
     #[cfg(unix)]
-    fn second_way(&mut self) -> Option<Stdio> {
-        let stream = self.stream.try_clone().ok()?;
-        Some(std::os::fd::OwnedFd::from(stream).into())
+    fn second_way(&self) -> io::Result<Stdio> {
+        Ok(std::os::fd::OwnedFd::from(self.stream.try_clone()?).into())
     }
 }
 

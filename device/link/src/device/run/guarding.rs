@@ -12,16 +12,11 @@ impl DeviceLoop {
         if self.signals.is_guarded() {
             return None;
         }
-        let port = self.exchange.port();
-        let Some(line) = self.exchange.second_way() else {
-            return Some(
-                GuardMessage::Missing { detail: "a line of this kind cannot be opened twice".to_owned() }
-                    .into(),
-            );
-        };
-        match guardian.start(&port, line) {
+        let started = self.exchange.second_way().and_then(|line| guardian.start(&self.exchange.port(), line));
+        match started {
             Ok(guard) => {
                 self.signals.set_guard(Some(guard));
+                self.held.clear();
                 None
             }
             Err(error) => Some(GuardMessage::Missing { detail: error.to_string() }.into()),
@@ -30,6 +25,9 @@ impl DeviceLoop {
 
     /// Tells the guard what would have to be stopped, when that has changed.
     pub(super) fn tend_guard(&mut self) {
+        if self.options.guardian.is_none() {
+            return;
+        }
         let armed = self.armed.map(|_| (true, true));
         let units = self.units.iter().map(|unit| (unit.moved, unit.script_started));
         let held: Vec<_> = std::iter::once(armed.unwrap_or_default()).chain(units).collect();

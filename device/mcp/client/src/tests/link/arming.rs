@@ -7,12 +7,17 @@ use brushwork_link::clock::Clock;
 use brushwork_link::device::DeviceOptions;
 use brushwork_link::device::PollRate;
 use brushwork_link::device::Request;
+use brushwork_link::device::StopBytes;
 use brushwork_link::device::{ArmScope, Drive, DriveCommand};
 use brushwork_link::device::{DisarmReason, Event};
+use brushwork_link::guardian::{Guardian, LineGuard};
 use brushwork_link::transport::Stream;
 use brushwork_mcp_wire::packet_serial::number;
 use brushwork_values::{Motor, Value};
 use std::collections::BTreeSet;
+use std::io;
+use std::process::Stdio;
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 /// Asks for arming on a link to `bus` and returns the sentences of the refusal.
@@ -514,4 +519,103 @@ fn closing_stops_what_moves() {
     assert_eq!(link.taken(number::DUTY_ACCEL_BOTH)[0].values, DUTY_ZERO);
     assert!(link.stops()[0].confirmed());
     assert!(link.has(|event| matches!(event, Event::Closed)));
+}
+
+/// What guards are told, in order, with the time on the clock of the link.
+#[derive(Clone, Debug, Default)]
+struct Told(Arc<Mutex<Vec<&'static str>>>);
+
+impl Told {
+    fn note(&self, what: &'static str) {
+        self.0.lock().unwrap().push(what);
+    }
+
+    fn take(&self) -> Vec<&'static str> {
+        std::mem::take(&mut self.0.lock().unwrap())
+    }
+}
+
+impl Guardian for Told {
+    fn start(&self, _port: &str, _line: Stdio) -> io::Result<Box<dyn LineGuard>> {
+        self.note("start");
+        Ok(Box::new(self.clone()))
+    }
+}
+
+impl LineGuard for Told {
+    fn hold(&self, stop: &StopBytes) {
+        assert!(!stop.is_empty());
+        self.note("hold");
+    }
+
+    fn release(&self) {
+        self.note("release");
+    }
+
+    fn moving(&self, moving: bool) {
+        self.note(if moving { "moving" } else { "at rest" });
+    }
+
+    fn is_there(&self) -> bool {
+        true
+    }
+
+    fn lives(&self) {}
+}
+
+#[test]
+fn a_guard_knows_the_stop_before_anything_may_move_and_is_released_when_nothing_does() {
+    let told = Told::default();
+    let options = DeviceOptions {
+        stream: Some(Stream::Usb),
+        guardian: Some(Arc::new(told.clone())),
+        ..DeviceOptions::default()
+    };
+    let mut link = Link::with(Bus::shared(), options);
+    link.run_for(ms(500));
+    assert_eq!(told.take(), [""; 0], "a line that moves nothing has none");
+    link.ask(Request::Arm(ArmScope::Pwm));
+    link.settle();
+    assert_eq!(told.take(), ["start", "hold"]);
+    assert!(!moved(&link));
+    link.drive(0.5);
+    link.run_for(ms(300));
+    assert_eq!(told.take(), ["moving", "hold"], "by now the unit has moved");
+    link.ask(Request::Disarm);
+    link.run_for(ms(300));
+    assert_eq!(told.take(), ["at rest", "release"]);
+    link.ask(Request::Arm(ArmScope::Pwm));
+    link.settle();
+    assert_eq!(told.take(), ["hold"], "the line has its guard");
+}
+
+/// No process can be had.
+#[derive(Debug)]
+struct Nobody;
+
+impl Guardian for Nobody {
+    fn start(&self, _port: &str, _line: Stdio) -> io::Result<Box<dyn LineGuard>> {
+        Err(io::Error::other("too many processes"))
+    }
+}
+
+#[test]
+fn where_no_guard_can_be_had_arming_says_so() {
+    let guardian: Option<Arc<dyn Guardian>> = Some(Arc::new(Nobody));
+    let mut link = Link::with(
+        Bus::shared(),
+        DeviceOptions { stream: Some(Stream::Usb), guardian, ..DeviceOptions::default() },
+    );
+    link.run_for(ms(500));
+    link.ask(Request::Arm(ArmScope::Pwm));
+    link.settle();
+    let said = |event: &Event| match event {
+        Event::Armed { warnings, .. } => warnings.iter().any(|warning| {
+            warning.to_string().starts_with(
+                "No second process watches over this line (too many processes): if this program dies",
+            )
+        }),
+        _ => false,
+    };
+    assert!(link.has(said), "{:?}", link.events);
 }

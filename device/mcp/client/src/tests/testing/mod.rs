@@ -165,6 +165,10 @@ impl Transport for ScriptedTransport {
     fn latency(&self) -> Duration {
         ms(50)
     }
+
+    fn second_way(&self) -> std::io::Result<std::process::Stdio> {
+        Ok(std::process::Stdio::null())
+    }
 }
 
 /// A far end that answers the expected requests in order and panics at any other.
