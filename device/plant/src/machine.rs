@@ -95,3 +95,37 @@ pub trait Machine: Send + Any {
         false
     }
 }
+
+/// What a wrapper of a machine passes on as it is: all but its bytes and its time.
+macro_rules! passed_on {
+    () => {
+        fn bits_per_second(&self, stream: $crate::machine::StreamIndex) -> u32 {
+            self.inner.bits_per_second(stream)
+        }
+
+        fn units(&self) -> usize {
+            self.inner.units()
+        }
+
+        fn apply(&mut self, unit: usize, action: &$crate::world::WorldAction) {
+            self.inner.apply(unit, action);
+        }
+
+        fn views(&self) -> Vec<$crate::world::WorldView> {
+            self.inner.views()
+        }
+
+        fn plugged(&self) -> bool {
+            self.inner.plugged()
+        }
+
+        fn silence(&self) -> ::std::time::Duration {
+            self.inner.silence()
+        }
+
+        fn wants_real_time(&self) -> bool {
+            self.inner.wants_real_time()
+        }
+    };
+}
+pub(crate) use passed_on;

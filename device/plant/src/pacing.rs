@@ -4,8 +4,7 @@
 //! bit is through, to the machine as to the host. The machine's own turnaround is the time between the last bit of a request and the
 //! first of its reply.
 
-use crate::machine::{Machine, StreamIndex};
-use crate::world::{WorldAction, WorldView};
+use crate::machine::{Machine, StreamIndex, passed_on};
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -128,33 +127,7 @@ impl<M: Machine> Machine for Paced<M> {
         (arrived > 0).then(|| replies.drain(..arrived).map(|(_, byte)| byte).collect())
     }
 
-    fn bits_per_second(&self, stream: StreamIndex) -> u32 {
-        self.inner.bits_per_second(stream)
-    }
-
-    fn units(&self) -> usize {
-        self.inner.units()
-    }
-
-    fn apply(&mut self, unit: usize, action: &WorldAction) {
-        self.inner.apply(unit, action);
-    }
-
-    fn views(&self) -> Vec<WorldView> {
-        self.inner.views()
-    }
-
-    fn plugged(&self) -> bool {
-        self.inner.plugged()
-    }
-
-    fn silence(&self) -> Duration {
-        self.inner.silence()
-    }
-
-    fn wants_real_time(&self) -> bool {
-        self.inner.wants_real_time()
-    }
+    passed_on!();
 }
 
 fn earliest(a: Option<Duration>, b: Option<Duration>) -> Option<Duration> {

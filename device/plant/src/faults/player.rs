@@ -1,8 +1,8 @@
 //! Plays a fault script on a machine.
 
 use super::fault::{Direction, Fault, FaultEffect};
-use crate::machine::{Machine, StreamIndex};
-use crate::world::{WorldAction, WorldView};
+use crate::machine::{Machine, StreamIndex, passed_on};
+use crate::world::WorldAction;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use std::collections::VecDeque;
@@ -149,33 +149,7 @@ impl<M: Machine> Machine for Faulty<M> {
         self.to_host[stream.index()].pop_front_if(|(at, _)| *at <= now).map(|(_, bytes)| bytes)
     }
 
-    fn bits_per_second(&self, stream: StreamIndex) -> u32 {
-        self.inner.bits_per_second(stream)
-    }
-
-    fn units(&self) -> usize {
-        self.inner.units()
-    }
-
-    fn apply(&mut self, unit: usize, action: &WorldAction) {
-        self.inner.apply(unit, action);
-    }
-
-    fn views(&self) -> Vec<WorldView> {
-        self.inner.views()
-    }
-
-    fn plugged(&self) -> bool {
-        self.inner.plugged()
-    }
-
-    fn silence(&self) -> Duration {
-        self.inner.silence()
-    }
-
-    fn wants_real_time(&self) -> bool {
-        self.inner.wants_real_time()
-    }
+    passed_on!();
 }
 
 impl Wire {
