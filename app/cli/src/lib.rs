@@ -33,6 +33,7 @@ mod status;
 mod stop;
 mod tool;
 pub mod tune;
+mod work;
 
 use crate::messages::CliLinkMessage;
 use std::process::ExitCode;

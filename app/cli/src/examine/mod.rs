@@ -4,23 +4,18 @@ mod args;
 
 use crate::messages::CliJobMessage;
 use std::io::{self, IsTerminal as _, Write as _};
-use std::time::{Duration, Instant};
 
 use brushwork_core::examine::{Examining, Need, Step, Way};
 use brushwork_core::keep::{Keeping, Store, TrialKeeper, UnitId};
 use brushwork_link::transport::list_ports;
-use brushwork_link::{ArmScope, Event, Job, JobEnding, PollRate, WriteOptions};
+use brushwork_link::{ArmScope, Job, PollRate, WriteOptions};
 
 pub use args::ExamineArgs;
 
 use super::client::{arm, start};
-use super::interrupt::exit_of_interruption;
 use super::settings::ask::{is_yes, line};
-use super::settings::controller::Progress;
+use super::work::{self, Moves};
 use super::{Client, Exit, Interrupt, NewFile, Output, say};
-
-/// How long a job may take to end beyond its own limit, or after Ctrl-C.
-const END_LIMIT: Duration = Duration::from_secs(60);
 
 const NOBODY: &str = "Not asked: nobody could be asked whether it may be, and --yes did not name its step.";
 const REFUSED: &str = "Not asked: the owner did not agree.";
@@ -131,39 +126,8 @@ fn refusal(
 
 /// Runs a job to its end, renewing the dead-man. Ctrl-C stops the motors of one that moves, and cancels it.
 fn finish<T: Send + 'static>(client: &Client, job: Job<T>, interrupt: &Interrupt) -> Result<T, Exit> {
-    let deaf = Interrupt::default();
-    let mut deadline = Instant::now() + job.time_limit() + END_LIMIT;
+    let limit = job.time_limit();
     let ticket = start(client.device(), job)?;
-    let mut progress = Progress::new();
-    let mut stopped = false;
-    while Instant::now() < deadline {
-        if interrupt.is_raised() && !stopped {
-            stopped = true;
-            deadline = Instant::now() + END_LIMIT;
-            client.device().stop_all();
-            ticket.cancel();
-        }
-        client.device().renew();
-        match client.next_event(&deaf)? {
-            Some(Event::JobProgress { id, fraction, text }) if id == ticket.id() => {
-                progress.show(fraction, &text);
-            }
-            Some(Event::Failure(failure)) => say(failure.to_string()),
-            Some(Event::JobEnded(report)) if report.id == ticket.id() => {
-                drop(progress);
-                return match ticket.ending(report.ending) {
-                    JobEnding::Done(value) => Ok(value),
-                    JobEnding::Interrupted(cause) => {
-                        say(CliJobMessage::NotToTheEnd { act: report.name, cause: cause.to_string() });
-                        Err(exit_of_interruption(cause, stopped))
-                    }
-                    JobEnding::Failed(failure) => Err(Exit::Refused.saying(failure)),
-                    JobEnding::Panicked(word) => Err(Exit::Failed
-                        .saying(CliJobMessage::Internal { act: report.name, word: word.to_string() })),
-                };
-            }
-            _ => {}
-        }
-    }
-    Err(Exit::NoLink.saying(CliJobMessage::NotInTime { act: ticket.name().clone() }))
+    let report = work::wait(client, &ticket, limit, Moves::Yes, interrupt)?;
+    work::value(ticket.ending(report.ending), &report.name, Exit::Refused, interrupt)
 }

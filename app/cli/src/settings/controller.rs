@@ -3,26 +3,22 @@
 use crate::messages::{CliJobMessage, CliSettingsMessage};
 use brushwork_link::Message;
 use brushwork_link::messages::ActMessage;
-use std::io::{self, IsTerminal as _, Write as _};
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use brushwork_link::device::{JobContext, JobReport};
 use brushwork_link::transport::list_ports;
 use brushwork_link::{
-    DeviceHandle, Event, Failure, Identity, Job, JobEnding, JobTicket, Keeper, PollRate, Profile, ReadReport,
-    SettingsTable, Subject, UnitAddress, WriteOptions,
+    DeviceHandle, Event, Failure, Identity, Job, Keeper, PollRate, Profile, ReadReport, SettingsTable,
+    Subject, UnitAddress, WriteOptions,
 };
 
 use super::cut_short;
-use crate::interrupt::exit_of_interruption;
+use crate::work::{self, Moves};
 use crate::{Client, ConnectArgs, Exit, Interrupt, say};
 use brushwork_core::keep::{Keeping, Store, UnitId, profile_of};
 use brushwork_core::session::Simulation;
 use brushwork_core::settings::{Act, Done};
-
-/// How long a cancelled job may take to end.
-const CANCEL_LIMIT: Duration = Duration::from_secs(60);
 
 /// A connected controller of a known model.
 pub struct Controller<'i> {
@@ -162,8 +158,9 @@ impl<'i> Controller<'i> {
         let ticket = self.client.device().start(job).map_err(|refused| {
             Exit::Refused.saying(CliJobMessage::NotBegun { act: name.clone(), refused: refused.to_string() })
         })?;
-        let report = self.wait_for_end(&ticket, limit)?;
-        let broken = explain(&report, self.interrupt.is_raised());
+        let JobReport { name, ending, .. } =
+            work::wait(&self.client, &ticket, limit, Moves::No, self.interrupt)?;
+        let broken = work::value(ending, &name, Exit::Failed, self.interrupt).err();
         match (ticket.take(), broken) {
             (Some(value), broken) => Ok(Finished { value, broken }),
             (None, broken) => Err(broken.unwrap_or(Exit::Failed)),
@@ -184,76 +181,5 @@ impl<'i> Controller<'i> {
     /// The link is lost or the program was asked to end.
     pub fn next_event(&self) -> Result<Option<Event>, Exit> {
         self.client.next_event(self.interrupt)
-    }
-
-    fn wait_for_end<T>(&self, ticket: &JobTicket<T>, limit: Duration) -> Result<JobReport, Exit> {
-        let deaf = Interrupt::default();
-        let mut progress = Progress::new();
-        let mut deadline = Instant::now() + limit + CANCEL_LIMIT;
-        let mut cancelled = false;
-        while Instant::now() < deadline {
-            if self.interrupt.is_raised() && !cancelled {
-                cancelled = true;
-                deadline = Instant::now() + CANCEL_LIMIT;
-                ticket.cancel();
-            }
-            match self.client.next_event(&deaf)? {
-                Some(Event::JobProgress { id, fraction, text }) if id == ticket.id() => {
-                    progress.show(fraction, &text);
-                }
-                Some(Event::Failure(failure)) => say(failure.to_string()),
-                Some(Event::JobEnded(report)) if report.id == ticket.id() => return Ok(report),
-                _ => {}
-            }
-        }
-        let exit = if cancelled { Exit::Interrupted } else { Exit::Failed };
-        Err(exit.saying(CliJobMessage::WorkNotInTime { act: ticket.name().clone() }))
-    }
-}
-
-/// Says why a job did not run to its end, and gives the exit code for that.
-fn explain(report: &JobReport, by_signal: bool) -> Option<Exit> {
-    let name = &report.name;
-    match &report.ending {
-        JobEnding::Done(()) => None,
-        JobEnding::Interrupted(cause) => {
-            let exit = exit_of_interruption(*cause, by_signal);
-            Some(exit.saying(CliJobMessage::NotToTheEnd { act: name.clone(), cause: cause.to_string() }))
-        }
-        JobEnding::Failed(failure) => Some(Exit::Failed.saying(failure)),
-        JobEnding::Panicked(word) => {
-            Some(Exit::Failed.saying(CliJobMessage::Internal { act: name.clone(), word: word.to_string() }))
-        }
-    }
-}
-
-/// One line on a terminal that is overwritten as work goes on; nothing where standard error is no terminal.
-pub struct Progress {
-    on_terminal: bool,
-    is_shown: bool,
-}
-
-impl Progress {
-    /// Of nothing yet.
-    pub fn new() -> Self {
-        Self { on_terminal: io::stderr().is_terminal(), is_shown: false }
-    }
-
-    /// Shows how far it is.
-    pub fn show(&mut self, fraction: Option<f32>, text: &str) {
-        if !self.on_terminal {
-            return;
-        }
-        self.is_shown = true;
-        let percent = fraction.map_or_else(String::new, |fraction| format!("{:3.0} % ", fraction * 100.0));
-        let _ = write!(io::stderr(), "\r\x1b[K{percent}{text}");
-    }
-}
-
-impl Drop for Progress {
-    fn drop(&mut self) {
-        if self.is_shown {
-            let _ = write!(io::stderr(), "\r\x1b[K");
-        }
     }
 }
