@@ -29,7 +29,7 @@ messages! {
         NotSaved { failure: Failure } "Nothing was saved. {failure}",
         EepromLost "What EEPROM holds is not known. What was written and not saved is lost.",
         Note { note: String } "Note: {note}",
-        Wear { wear: String, limits: &'static str } "Note: {wear} {limits}",
+        Wear { wear: Message, limits: &'static str } "Note: {wear} {limits}",
         RawUndo { before: i64 } "`brushwork settings raw --undo` writes the {before} from before.",
         NoRawNumber "No raw number was written to this controller from this computer.",
         NotInProfile "What could not be read is not in the profile.",
@@ -81,7 +81,6 @@ messages! {
         NotToTheEnd { act: Message, cause: String } "Could not {act} to the end: {cause}.",
         Internal { act: Message, word: String } "Could not {act}: an internal error ({word}). Please report it.",
         NotInTime { act: Message } "Could not {act}: it did not end in its time.",
-        WorkNotInTime { act: Message } "Could not {act}: the work did not end in time.",
         NotBegun { act: Message, refused: String } "Could not {act}: {refused}",
     }
 }
@@ -100,7 +99,6 @@ messages! {
         NotSent "Nothing was sent.",
         NotEntered { refused: String } "Could not enter the firmware loader: {refused}",
         LoaderLate "Could not enter the firmware loader: the controller did not get there in time. Nothing was erased.",
-        Because { why: String } "{why}.",
         GoesOn "\nThe update cannot be stopped now: the controller would be left without firmware. It goes on.",
         Failed { failure: Failure } "\n{failure}",
         InternalError "Could not send the firmware: an internal error. Please report it.",
@@ -162,5 +160,15 @@ messages! {
         OtherRecord { file: String, entry: usize, of: usize } "The record in {file} does not belong to this version of the tuner, or was changed: at its entry {entry} of {of} the tuner asks for another step. Tune again.",
         SameResult "The replay gives the same result to the last bit.",
         OtherResult { file: String, parts: String } "The replay gives another result than {file} holds: it differs in {parts}. The report was changed, or was made on another kind of computer.",
+    }
+}
+
+messages! {
+    /// What of a stop was not reached.
+    pub enum CliStopMessage {
+        NotHeard { addresses: String } "Nobody answered at {addresses}: the stop was written there too, and whether it was heard is not known. If a motor runs there, cut its power.",
+        OtherNodes "Nodes that do not answer as a controller that this program knows were told nothing.",
+        Broadcast "Units that do not answer were told to stop by a broadcast, which nobody confirms.",
+        Silent { addresses: String } "Nobody answered at {addresses}; the stop was written to these addresses too.",
     }
 }

@@ -17,7 +17,7 @@ pub fn run(args: &NodesArgs, out: &mut Output, interrupt: &Interrupt) -> Result<
     if let Some(node) = args.start {
         let node = NodeId::new(node).ok_or(Exit::Usage)?;
         let started = bus::start(&target, None, node).map_err(|sentence| Exit::NoLink.saying(sentence))?;
-        say(started.sentence(node));
+        say(started.message(node));
         if matches!(started, Started::Still(_)) {
             return Err(Exit::Refused);
         }

@@ -2,12 +2,12 @@
 //!
 //! The stop goes out before anybody is looked for, to whoever may be there; then the units are found and each is asked to confirm.
 
-use crate::messages::CliLinkMessage;
+use crate::messages::{CliLinkMessage, CliStopMessage};
 use std::time::{Duration, Instant};
 
 use brushwork_link::device::{Addresses, DeviceHandle, Event, Identity, PollRate, StopReport, UnitStop};
 use brushwork_link::transport::ConnectTarget;
-use brushwork_link::{FamilyChoice, SystemClock, families};
+use brushwork_link::{FamilyChoice, Message, SystemClock, families};
 use serde_json::json;
 
 use super::args::StopArgs;
@@ -184,26 +184,20 @@ impl LineStop {
     }
 
     /// What is not plainly stopped, and what was not reached.
-    fn warnings(&self) -> Vec<String> {
+    fn warnings(&self) -> Vec<Message> {
         let matters = matters(&self.report, &self.units).into_iter();
-        let mut lines: Vec<String> = matters.map(|(_, text)| text).collect();
+        let mut lines: Vec<Message> = matters.map(|(_, text)| text).collect();
         let silent = self.silent();
         match self.asked {
-            Addresses::These(_) if !silent.is_empty() => lines.push(format!(
-                "Nobody answered at {}: the stop was written there too, and whether it was heard is not known. If a motor runs there, cut its power.",
-                in_words(&silent)
-            )),
+            Addresses::These(_) if !silent.is_empty() => {
+                lines.push(CliStopMessage::NotHeard { addresses: in_words(&silent) }.into());
+            }
             Addresses::These(_) => {}
-            _ if self.is_of_nodes() => lines.push(
-                "Nodes that do not answer as a controller that this program knows were told nothing.".to_owned(),
-            ),
-            _ if self.written_to().is_empty() => lines.push(
-                "Units that do not answer were told to stop by a broadcast, which nobody confirms.".to_owned(),
-            ),
-            _ if !silent.is_empty() => lines.push(format!(
-                "Nobody answered at {}; the stop was written to these addresses too.",
-                in_words(&silent)
-            )),
+            _ if self.is_of_nodes() => lines.push(CliStopMessage::OtherNodes.into()),
+            _ if self.written_to().is_empty() => lines.push(CliStopMessage::Broadcast.into()),
+            _ if !silent.is_empty() => {
+                lines.push(CliStopMessage::Silent { addresses: in_words(&silent) }.into());
+            }
             Addresses::Scan | Addresses::Only(_) | Addresses::Factory => {}
         }
         lines

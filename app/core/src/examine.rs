@@ -18,10 +18,11 @@ use brushwork_family::messages::{
 use brushwork_family::tuned::Registers;
 use brushwork_family::{Restored, Simulator, Started, Tuned, simulator};
 use brushwork_link::settings::{Ending, WriteReport, begin_command, begin_trial, end_act, write_watched};
-use brushwork_link::{Failure, Identity, Job, ReadReport, Subject, WriteOptions, families};
+use brushwork_link::{Failure, Identity, Job, Message, ReadReport, Subject, WriteOptions, families};
 use brushwork_values::Motor;
 
 use crate::keep::TrialKeeper;
+use crate::messages::ExamineMessage;
 use crate::tune::law::{Families, Setup};
 use crate::tune::{self, Slot, Target};
 
@@ -69,9 +70,9 @@ impl Examining {
     ///
     /// # Errors
     /// A sentence: its family has no questions.
-    pub fn begin(identity: &Identity) -> Result<Self, String> {
+    pub fn begin(identity: &Identity) -> Result<Self, Message> {
         let Some(examiner) = examine::examiner(identity.family) else {
-            return Err(format!("There are no questions for a {} yet.", identity.title()));
+            return Err(ExamineMessage::NoQuestions { unit: identity.title().to_owned() }.into());
         };
         let found = Arc::new(Mutex::new(examine::begun(examiner, identity)));
         let begun = Self { examiner, subject: identity.subject(), found };

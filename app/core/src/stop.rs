@@ -1,9 +1,9 @@
 //! What a stop came to, as a person has to know it.
 
-use std::fmt::Display;
-
-use brushwork_link::Identity;
 use brushwork_link::device::StopReport;
+use brushwork_link::{Identity, Message};
+
+use crate::messages::StopMessage;
 
 /// What of a stop is not plain, the gravest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -18,18 +18,21 @@ pub enum Matter {
 
 /// All that is not plainly stopped, a sentence each, unit by unit.
 #[must_use]
-pub fn matters(report: &StopReport, units: &[Identity]) -> Vec<(Matter, String)> {
+pub fn matters(report: &StopReport, units: &[Identity]) -> Vec<(Matter, Message)> {
     let mut matters = Vec::new();
     for unit in &report.units {
         let place = place(units, unit.address);
         if !unit.confirmed {
-            let text = format!("{place} did not confirm the stop. Cut the motor power.");
-            matters.push((Matter::NotConfirmed, text));
+            let text = StopMessage::NotConfirmed { unit: place.clone() };
+            matters.push((Matter::NotConfirmed, text.into()));
         }
         let several = report.units.len() > 1;
-        let text = |text: &dyn Display| if several { format!("{place}: {text}") } else { text.to_string() };
+        let text = |text: &Message| match several {
+            true => StopMessage::Of { unit: place.clone(), text: text.clone() }.into(),
+            false => text.clone(),
+        };
         matters.extend(unit.still_driven_by.iter().map(|driver| (Matter::StillDriven, text(driver))));
-        matters.extend(unit.failures.iter().map(|failure| (Matter::Failed, failure.to_string())));
+        matters.extend(unit.failures.iter().map(|failure| (Matter::Failed, failure.message())));
     }
     matters
 }

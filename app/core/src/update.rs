@@ -8,10 +8,11 @@ use std::time::{Duration, Instant};
 
 use brushwork_link::device::Event;
 use brushwork_link::settings::{Profile, ReadReport, diff};
-use brushwork_link::{ConnectTarget, Identity, SystemClock};
+use brushwork_link::{ConnectTarget, Identity, Message, SystemClock};
 use crossbeam_channel::RecvTimeoutError;
 
 use crate::keep::{KeepError, Store, UnitId};
+use crate::messages::UpdateMessage;
 use crate::session::{self, Session, SessionOptions, Simulation};
 
 /// The settings from before an update.
@@ -65,17 +66,21 @@ pub struct Compared {
     /// A line for each that differs: "M1 QPPS: 44000 counts/s in the backup, 12000 counts/s now".
     pub differences: Vec<String>,
     /// Why they could not be compared.
-    pub failure: Option<String>,
+    pub failure: Option<Message>,
 }
 
 /// Reads of a unit are kept as its backup before its firmware is replaced.
 ///
 /// # Errors
 /// A sentence: not all settings were read, or they could not be kept.
-pub fn keep(report: &ReadReport, identity: &Identity, unit: &UnitId, store: &Store) -> Result<Kept, String> {
-    let told = |error: KeepError| match report.unread().next() {
-        Some(unread) => format!("{error} {}", unread.failure),
-        None => error.to_string(),
+pub fn keep(report: &ReadReport, identity: &Identity, unit: &UnitId, store: &Store) -> Result<Kept, Message> {
+    let told = |error: KeepError| {
+        let unread = report.unread().next().map(|unread| unread.failure.message());
+        let error = Message::error(error);
+        match unread {
+            Some(unread) => UpdateMessage::NotKept { error, unread }.into(),
+            None => error,
+        }
     };
     let (profile, backup) = store.back_up_for_firmware(unit, identity, report).map_err(told)?;
     Ok(Kept { profile, title: backup.title(), name: backup.name })
@@ -122,18 +127,12 @@ impl Verdict {
 
     /// What it means, as sentences.
     #[must_use]
-    pub fn sentence(&self) -> String {
-        match self {
-            Self::Updated { from, to } => format!("The firmware is updated: {from} before, {to} now."),
-            Self::Runs(version) => format!("The controller runs {version}."),
-            Self::NotChanged(version) => format!(
-                "The version did not change: the controller still calls itself {version}. That all pages were confirmed does not \
-                 mean that the file was firmware for it. Check the file, then update again."
-            ),
-            Self::Unexpected { announced, found } => format!(
-                "The firmware is not the one that was sent: the image is version {announced}, and the controller calls itself \
-                 {found}. Check the file, then update again."
-            ),
+    pub fn sentence(&self) -> UpdateMessage {
+        match self.clone() {
+            Self::Updated { from, to } => UpdateMessage::Updated { from, to },
+            Self::Runs(version) => UpdateMessage::Runs { version },
+            Self::NotChanged(version) => UpdateMessage::NotChanged { version },
+            Self::Unexpected { announced, found } => UpdateMessage::Unexpected { announced, found },
         }
     }
 }
@@ -160,12 +159,12 @@ impl Kept {
 impl Compared {
     /// What came of it, in a sentence.
     #[must_use]
-    pub fn sentence(&self) -> String {
+    pub fn sentence(&self) -> UpdateMessage {
         match (&self.failure, self.differences.len()) {
-            (Some(why), _) => format!("The settings could not be compared with the backup: {why}"),
-            (None, 0) => "The settings are as they are in the backup.".to_owned(),
-            (None, 1) => "1 setting differs from the backup:".to_owned(),
-            (None, count) => format!("{count} settings differ from the backup:"),
+            (Some(why), _) => UpdateMessage::NotCompared { why: why.clone() },
+            (None, 0) => UpdateMessage::AsInBackup,
+            (None, 1) => UpdateMessage::OneDiffers,
+            (None, count) => UpdateMessage::Differ { count },
         }
     }
 }
@@ -186,9 +185,9 @@ pub fn wait_for_return(
     options: SessionOptions,
     simulation: Option<&Arc<Simulation>>,
     goes_on: &dyn Fn() -> bool,
-) -> Result<(), String> {
+) -> Result<(), Message> {
     let begun_at = Instant::now();
-    let mut came_back = "it was not waited for.".to_owned();
+    let mut came_back = UpdateMessage::NotWaited.into();
     while goes_on() && begun_at.elapsed() < RETURN_LIMIT {
         std::thread::sleep(RETURN_PAUSE);
         match session::open(target, options, SystemClock::shared(), simulation.cloned()) {
@@ -196,23 +195,23 @@ pub fn wait_for_return(
                 Ok(()) => return Ok(()),
                 Err(why) => came_back = why,
             },
-            Err(error) => came_back = error.to_string(),
+            Err(error) => came_back = Message::error(error),
         }
     }
     Err(came_back)
 }
 
-fn look(session: &Session, goes_on: &dyn Fn() -> bool) -> Result<(), String> {
+fn look(session: &Session, goes_on: &dyn Fn() -> bool) -> Result<(), Message> {
     let begun_at = Instant::now();
     while goes_on() && begun_at.elapsed() < RETURN_LIMIT {
         match session.device.events().recv_timeout(SLICE) {
             Ok(Event::Selected { .. }) => return Ok(()),
-            Ok(Event::Lost(failure)) => return Err(failure.to_string()),
+            Ok(Event::Lost(failure)) => return Err(failure.message()),
             Ok(_) | Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => break,
         }
     }
-    Err("Nobody answered.".to_owned())
+    Err(UpdateMessage::NobodyAnswered.into())
 }
 
 #[cfg(test)]
@@ -229,14 +228,22 @@ mod tests {
         let verdict = expected(Some(old), None).judge(new, "1.1.0");
         assert!(verdict.is_good());
         assert_eq!(
-            verdict.sentence(),
+            verdict.sentence().to_string(),
             "The firmware is updated: MCP266 2x60A v1.0.0 before, MCP266 2x60A v1.1.0 now."
         );
         let verdict = expected(Some(old), None).judge(old, "1.0.0");
         assert!(!verdict.is_good());
-        assert!(verdict.sentence().starts_with("The version did not change"), "{}", verdict.sentence());
+        assert!(
+            verdict.sentence().to_string().starts_with("The version did not change"),
+            "{}",
+            verdict.sentence()
+        );
         let verdict = expected(Some(old), Some("1.2.0")).judge(new, "1.1.0");
-        assert!(!verdict.is_good() && verdict.sentence().contains("version 1.2.0"), "{}", verdict.sentence());
+        assert!(
+            !verdict.is_good() && verdict.sentence().to_string().contains("version 1.2.0"),
+            "{}",
+            verdict.sentence()
+        );
         assert!(
             expected(None, Some("1.1.0")).judge(new, "1.1.0").is_good(),
             "resumed, nothing known of before"

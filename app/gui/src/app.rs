@@ -4,6 +4,8 @@
 //! the link's own clock and its links from outside ([`Parts`]), and never waits for a byte.
 
 use crate::messages::WindowStatusMessage;
+use brushwork_core::messages::EndedMessage;
+use brushwork_link::Message;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -127,7 +129,7 @@ impl App {
         self.drive(&ctx);
         self.show_appearance(&ctx);
         if let Some(failure) = self.memory.as_mut().and_then(|memory| memory.look(&ctx, &self.model)) {
-            self.model.messages.warn(failure.to_string());
+            self.model.messages.warn(failure.message());
         }
         self.look_after_programs(&ctx);
         self.hold_unsaved(&ctx);
@@ -224,7 +226,7 @@ impl App {
                 Ok(event) => self.take(connection, event),
                 Err(TryRecvError::Empty) => break,
                 Err(TryRecvError::Disconnected) => {
-                    self.say(connection, Gravity::Error, WindowStatusMessage::LinkEnded);
+                    self.say(connection, Gravity::Error, WindowStatusMessage::LinkEnded.into());
                     self.ended(connection);
                 }
             }
@@ -262,11 +264,10 @@ impl App {
     }
 
     /// Says something about a link; one in the background is named.
-    fn say(&mut self, id: ConnectionId, gravity: Gravity, text: impl std::fmt::Display) {
-        let text = text.to_string();
+    fn say(&mut self, id: ConnectionId, gravity: Gravity, text: Message) {
         let behind = self.model.others.iter().find(|connection| connection.id() == id);
         let text = match behind.and_then(|connection| connection.phase.target()) {
-            Some(target) => format!("{target}: {text}"),
+            Some(target) => WindowStatusMessage::Of { target: target.to_owned(), text }.into(),
             None => text,
         };
         self.model.messages.say(gravity, text);
@@ -416,14 +417,14 @@ impl App {
     fn stop(&mut self) {
         self.links.stop_all();
         for connection in self.model.connections_mut() {
-            connection.tune.abort("Stop was pressed");
+            connection.tune.abort(EndedMessage::StopPressed);
             connection.link.arming = Arming::Disarmed;
             connection.rest();
         }
     }
 
     fn disarm(&mut self) {
-        self.model.front.tune.abort("the screen was left or disarmed");
+        self.model.front.tune.abort(EndedMessage::ScreenLeft);
         if self.model.front.link.arming != Arming::Disarmed {
             self.request(Request::Disarm);
         }
@@ -465,7 +466,7 @@ impl App {
         let unit = self.model.front.world_unit;
         let world = self.links.get(self.model.front.id()).and_then(|link| link.world.as_ref());
         if let Some(Err(failure)) = world.map(|world| world.apply(unit, action)) {
-            self.model.messages.fail(failure.to_string());
+            self.model.messages.fail(failure.message());
         }
     }
 
@@ -508,7 +509,7 @@ impl App {
         match device.request(request) {
             Ok(()) => true,
             Err(refused) => {
-                self.say(connection, Gravity::Error, refused.to_string());
+                self.say(connection, Gravity::Error, Message::error(refused));
                 false
             }
         }

@@ -4,7 +4,7 @@ use std::fmt::Debug;
 
 use brushwork_core::keep::Store;
 use brushwork_core::session::firmware::LoaderPlace;
-use brushwork_link::{ConnectTarget, Request, SettingsImage};
+use brushwork_link::{ConnectTarget, Message, Request, SettingsImage};
 
 use super::model::screen::Screen;
 use super::model::{ConnectionId, Model};
@@ -12,7 +12,7 @@ use super::model::{ConnectionId, Model};
 /// Something that the screens of a family ask for.
 pub trait FamilyAction: Debug {
     /// Does it; why not, as a sentence.
-    fn act(&self, host: &mut dyn Host) -> Result<(), String>;
+    fn act(&self, host: &mut dyn Host) -> Result<(), Message>;
 }
 
 /// What the window does for an action.
@@ -24,7 +24,7 @@ pub trait Host {
     fn request_of(&mut self, connection: ConnectionId, request: Request) -> bool;
 
     /// Writes values to the RAM of the unit in front, with a backup before, and reads them back.
-    fn write_ram(&mut self, wanted: SettingsImage) -> Result<(), String>;
+    fn write_ram(&mut self, wanted: SettingsImage) -> Result<(), Message>;
 
     /// Goes to a screen.
     fn show(&mut self, screen: Screen);

@@ -24,7 +24,7 @@ pub mod keys;
 pub mod links;
 pub mod mcl;
 pub mod mcp;
-mod messages;
+pub mod messages;
 pub mod model;
 pub mod motion_mind;
 pub mod opener;

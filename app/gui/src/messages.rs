@@ -1,7 +1,9 @@
 //! What the window says of its own acts, in its words: one table for each theme.
 
 use brushwork_canopen::NodeId;
-use brushwork_values::{Motor, messages};
+use brushwork_core::messages::EndedMessage;
+use brushwork_link::{Interruption, Message};
+use brushwork_values::{Motor, Sentences, messages};
 
 messages! {
     /// What is tried, as a bare verb phrase, in failures and as the name of a job.
@@ -63,8 +65,10 @@ messages! {
         WindingPutBack "L and R are put back as they were before the run.",
         WindingNotPutBack "L and R could not be put back as they were before the run. Set them under Velocity loop, or switch the controller off and on: its EEPROM still has them.",
         GaveUp "Gave up connecting.",
+        NoLinkThread "Could not open the link: the system gave no thread. Try again.",
+        Of { target: String, text: Message } "{target}: {text}",
         NodeStartSent { node: NodeId } "The start was sent to {node}: its heartbeat tells what comes of it.",
-        ConnectAgain { sentence: String } "{sentence} Connect to the bus again.",
+        ConnectAgain { sentence: Message } "{sentence} Connect to the bus again.",
         NodeNotStarted "Could not start the node: the system gave no thread. Try again.",
         DownloadRuns "A download runs already. Wait for it or cancel it.",
         WaitsForRun "That waits for the end of the tuning run, so that the time-out and the gains of before are written, not those of the run.",
@@ -79,18 +83,203 @@ messages! {
         Armed { scope: String } "Armed for {scope}. Space or Esc stops.",
         Disconnected "Disconnected.",
         Copied { count: usize } "Copied {count} transactions.",
-        NotTuned { motor: Motor, why: String, back: String } "{motor} was not tuned: {why}{back}",
+        NotTuned { motor: Motor, why: Message } "{motor} was not tuned: {why}",
+        NotTunedAndStopped { motor: Motor, why: Message } "{motor} was not tuned: {why} The motors were stopped and the old gains are in force.",
         AsPredicted { motor: Motor } "{motor} behaves as predicted with these gains.",
         LinkEnded "The link ended without a reason. Connect again.",
         ArmEditorFirst "A script can move motors: arm the MCL Editor first, then press Run again.",
         CodeIsNotPublic "Could not download the program: the byte code of real controllers is not public, so nobody but their maker can compile for them. Choose an image file that the maker's program has compiled: it is sent as it is, and can be started, stopped and set to autorun from here.",
         RunHoldsSettings "A tuning run is at work, and this command changes settings. Send it when the run has ended.",
         GainsBack { motor: Motor } "The gains of {motor} from before the run are back.",
-        NotTunedFor { motor: Motor, why: String } "{motor} was not tuned: {why}.",
+        NotTunedFor { motor: Motor, why: Message } "{motor} was not tuned: {why}.",
         TunedWithWarning { motor: Motor, cause: String } "{motor} is tuned, with something to know: {cause}",
         TunedNotApplied { motor: Motor } "{motor} is tuned. The old gains are in force until you apply the proposed ones.",
         NotRecorded { error: String } "Could not record: {error}. Close other programs and try again.",
         NotExported { error: String } "Could not export: {error}. Close other programs and try again.",
         Tuned { motor: Motor, cause: String } "{motor}: {cause}",
+    }
+}
+
+messages! {
+    /// What the message line says of an open link.
+    pub enum LinkStatusMessage {
+        Connected { unit: String, port: String, place: String, firmware: String, generation: String } "Connected to {unit} at {port}, {place}, firmware {firmware} ({generation}).",
+        ConnectedBare { unit: String, port: String, place: String, generation: String } "Connected to {unit} at {port}, {place} ({generation}).",
+        ConnectedOf { unit: String, port: String, place: String, generation: String } "Connected to {unit} at {port}, {place}, {generation}.",
+        Lacks { unit: String, commands: String } "The firmware of {unit} does not have: {commands}.",
+        LostArmed { what: Message, seconds: f64 } "{what} The screen was armed: the controller stops its motors by itself after {seconds:.1} s of silence.",
+        LostArmedForever { what: Message } "{what} The screen was armed: make sure that the motors stand still.",
+        LostWaiting { what: Message, waiting: Message } "{what} {waiting}",
+        Stopped { milliseconds: f64 } "Stopped. The stop was on the wire after {milliseconds:.1} ms; duty 0 is confirmed.",
+    }
+}
+
+messages! {
+    /// How a job of the window ended.
+    pub enum JobMessage {
+        Panicked { act: Message, word: String } "Could not {act}: Brushwork had a bug. Its last word: {word}",
+        CutShort { act: Message, cause: EndedMessage } "Did not {act} to the end: {cause}. The motors were stopped.",
+        Played "The profile was played to its end. The motors were stopped.",
+        QppsMeasured "QPPS was measured. The motors were stopped.",
+        Downloaded { title: String, how: String } "Downloaded {title}: {how}",
+    }
+}
+
+messages! {
+    /// What came of the test of the voltage clamp.
+    pub enum ClampMessage {
+        Over { percent: f64, volts: f64, limit: f64 } "Stopped at {percent:.0} %: the main battery reached {volts:.1} V, the limit is {limit:.1} V. Use a resistor of fewer ohms, or add capacitance across B+ and B-. MCP manual 1.7.5.",
+        Braked { percent: f64, milliseconds: f64, volts: f64 } "Stopped at {percent:.0} %: the main battery was above the controller's maximum for {milliseconds:.0} ms, {volts:.1} V at most, so that the controller braked the motor by itself. The clamp does not take the energy: check its wiring and its output, or use a resistor of fewer ohms. MCP manual 1.7.5.",
+        Stayed { limit: f64, highest: f64 } "The main battery stayed below {limit:.1} V from every speed: {highest:.1} V at most.",
+        NoResult "The test ended without a result. Try again.",
+        CutShort { cause: Interruption } "The test did not run to its end: {cause}. The motors were stopped.",
+        Panicked { word: String } "The test did not run: the program has a fault ({word}).",
+    }
+}
+
+messages! {
+    /// What came of work with the settings.
+    pub enum OutcomeMessage {
+        Applied { settings: String } "Applied and read back: {settings} in the controller's RAM. Until they are saved to EEPROM they last until it is switched off.",
+        Wrong { sentences: Sentences } "{sentences}",
+        NotDone { act: Message, cause: Interruption } "Did not {act}: {cause}. What the screen shows is from before.",
+        Panicked { act: Message, word: String } "Could not {act}: the program has a fault ({word}). Read the settings to see what they are.",
+        NoResult { act: Message } "Could not {act}: no result came.",
+        Read { settings: String, rest: Message } "{settings} read.{rest}",
+        Loaded { settings: String, rest: Message } "{settings} loaded from EEPROM and read.{rest}",
+        Absent { settings: String } " This firmware does not have {settings}.",
+        Unread { settings: String } " {settings} could not be read; each row says why.",
+        Written { settings: String } "{settings} written and read back as wanted. Save to EEPROM to keep them over a power cycle.",
+        NotTaken { failed: usize, settings: String } "{failed} of {settings} did not take; their rows keep the change.",
+        SomeCannotBe "Nothing was written: some of the changes cannot be.",
+        NothingWritten { failure: Message } "Nothing was written. {failure}",
+        Defaults "The controller works with its default settings. Save to EEPROM to keep them.",
+        OwnDefaults { settings: String } "The controller works with its default settings. Save to EEPROM to keep them. {settings} came back with another value than listed here.",
+        Unfinished { what: Message } "{what} General Settings says which settings are old and which are new.",
+    }
+}
+
+messages! {
+    /// What is said of the two sides of a comparison.
+    pub enum CompareMessage {
+        BackupGone "The backup is not there any more.",
+        BackupNotOpened "The backup was not opened.",
+        NoUnit "No controller is looked at.",
+        NotRead "The settings have not been read.",
+        NoProfile "No profile is open.",
+    }
+}
+
+messages! {
+    /// What is said while an input is calibrated.
+    pub enum CalibrationMessage {
+        Open { pin: String } "{pin} commands nothing while it is calibrated.",
+        NotOpened { pin: String } "{pin} could not be opened for calibration. It is put back as it was.",
+        PutBack { pin: String } "{pin} is as it was before the calibration.",
+        Runs { pin: String, min: f64, center: f64, max: f64 } "{pin} runs from {min} over {center} to {max}. Write to give it to the controller.",
+        RunsWithNoise { pin: String, min: f64, center: f64, max: f64, noise: f64 } "{pin} runs from {min} over {center} to {max}. At rest it differs by up to {noise}: a deadband of twice that keeps it still. Write to give it to the controller.",
+        LeftOpen { pin: String } "{pin} could not be put back as it was: it commands nothing now. Its old settings stand here as changes; write them.",
+        NoReadings "No readings have come yet. Wait until the input is read.",
+        ShortTravel { travel: f64 } "The input moved over {travel} only. Move it to both ends and hold it there a moment.",
+        EndsFirst "Take the ends first.",
+        FewReadings "Too few readings have come yet. Leave the input at rest a moment.",
+        NotAtRest { noise: f64, center: f64 } "The input does not rest: its readings differ by {noise} from {center}. Let go of it and wait.",
+        RestsAtEnd { center: f64, min: f64, max: f64 } "The input rests at {center}, which is one of its ends, {min} and {max}. Let go of it, or move it to the middle.",
+    }
+}
+
+messages! {
+    /// Why something of the tuning screens is not done, and what became of a run.
+    pub enum TuningMessage {
+        NothingToTry "There are no gains to try. Tune first.",
+        RunGoesOn "A run goes on already. Wait for it or stop it.",
+        NoTravel "The travel has no room: its high end must be at least 40 counts above its low end.",
+        Panicked { word: String } "Brushwork had a bug. Its last word: {word}",
+        NothingCame "nothing came of it",
+        Owed "The run was cut off from the controller, whose own time-out stops the motors. The gains from before are put back when it answers again: connect again. Switching it off and on brings back those of its EEPROM.",
+        WindingUnread "L and R have not been read. Read the settings again first.",
+        NothingToApply "There are no gains to apply. Tune first.",
+        RegistersUnread "The registers are being read, so that they can be put back. Apply in a moment.",
+        AtItsEnd "That changes nothing: the value is at its end already.",
+        NothingToUndo "Nothing was applied that could be undone.",
+        NotConnected "No controller is connected.",
+        HeldAlready "The controller holds these values already.",
+        SettingsBusy "The settings are being read or written. Try again in a moment.",
+    }
+}
+
+messages! {
+    /// What the editor says of a program.
+    pub enum EditorMessage {
+        LoadedAgain { title: String } "{title} was changed by another program and was loaded again. Undo brings the old text back.",
+        ChangedElsewhere { title: String } "{title} was changed by another program and was not saved. Choose above the text which one counts.",
+        NotEncoded { title: String, error: Message } "Could not save {title}: {error}. Choose UTF-8 below the text and save again.",
+        OneWarning "1 warning",
+        Warnings { count: usize } "{count} warnings",
+        OneError "1 error",
+        Errors { count: usize } "{count} errors",
+        Free { title: String } "{title} is free of errors.",
+        Warned { title: String, warned: Message } "{title} has no errors and {warned}.",
+        Found { title: String, found: Message, warned: Message } "{title} has {found} and {warned}.",
+        Printed { title: String } "{title} is with the printer.",
+        NoName "There is no name at the caret. Put it on a variable, a constant or a label.",
+        OfTheLanguage { word: String } "{word} is a word of MCL and not defined in the program.",
+        NotDefined { word: String } "{word} is not defined in this program.",
+        NoBlock "Put the caret on a word such as IF, ELSE, WHILE or NEXT first.",
+        NotRenamed { why: Message } "The name stays as it is: {why}.",
+    }
+}
+
+messages! {
+    /// What is said of the files of the graph.
+    pub enum GraphMessage {
+        Wrote { path: String } "Wrote {path}.",
+        NotWritten { path: String, error: String } "Could not write {path}: {error}. Choose another folder.",
+        RecordedInPart { samples: u64, path: String, lost: u64 } "Recorded {samples} samples to {path}, but {lost} were lost: the disk was too slow.",
+        Recorded { samples: u64, path: String, size: String } "Recorded {samples} samples to {path} ({size}).",
+        RecordedUntilLost { samples: u64, path: String, size: String } "The recording ended with the link. Recorded {samples} samples to {path} ({size}).",
+        RecordedUntilOther { samples: u64, path: String, size: String } "The recording ended: the controller has other channels. Recorded {samples} samples to {path} ({size}).",
+        NoThread "Could not open the recording: the system gave no thread.",
+        NoSample { path: String } "Could not open the recording {path}: there is no sample in it. Choose another file.",
+        LeftOut { path: String, rows: u64 } "{path}: the oldest {rows} rows are left out; the rest fits in memory.",
+        Notes { notes: Sentences } "{notes}",
+    }
+}
+
+messages! {
+    /// What is said of the traffic's file.
+    pub enum TrafficMessage {
+        Saved { count: usize, path: String } "Saved {count} transactions to {path}.",
+        NotSaved { path: String, error: String } "Could not save the traffic to {path}: {error}. Choose another folder or name.",
+    }
+}
+
+messages! {
+    /// What the calibration of an R/C stick waits for.
+    pub enum RadioMessage {
+        NoPulse "No R/C pulse has been read yet.",
+        OffMiddle { milliseconds: f64 } "The middle is {milliseconds:+.3} ms off 1.500 ms. Trim the transmitter until it is there, then go on.",
+        NotShorter "The pulse has not become shorter. Pull the stick fully back.",
+        NotLonger "The pulse has not become longer. Push the stick fully forward; if it gets shorter, reverse the channel at the transmitter.",
+    }
+}
+
+messages! {
+    /// Why firmware is not sent.
+    pub enum FirmwareMessage {
+        NotSent { why: Message } "The file is not sent: {why}.",
+        ForSimulated "The file is not sent: it was made for simulated controllers.",
+        ModelUnknown "The controller's model is not known.",
+        ChooseModel "Choose the model that waits in its loader.",
+        NotRead "The settings were not read.",
+        NoThread { error: String } "Could not start the thread that keeps the backup: {error}.",
+        ConnectFirst "Connect the controller first.",
+        HoldsWindow "The window stays open: a firmware update runs, and ending it now would leave the controller without firmware.",
+        LinkLost "the link was lost.",
+        Busy "the controller is busy.",
+        TooLarge { bytes: u64 } "The file is not sent: it has {bytes} bytes, and no image is that large.",
+        NotBegun { why: Message } "The update did not begin: {why} Nothing was erased.",
+        CannotSend { why: Message } "{why}: switch the controller off and on.",
+        NotFound { path: String, error: String } "Could not read {path}: {error}.",
     }
 }

@@ -58,7 +58,7 @@ pub fn run(window: WindowOptions) -> Result<(), WindowError> {
                 app.end_by(EndBySignal::install(), &creation.egui_ctx);
                 app.model.appearance.plain |= window.plain;
                 if let Some(failure) = trouble {
-                    app.model.messages.warn(failure.to_string());
+                    app.model.messages.warn(failure.message());
                 }
                 if let Some(target) = &window.open {
                     app.open(target);

@@ -106,6 +106,19 @@ impl fmt::Display for Listed {
     }
 }
 
+/// Several sentences as one value of another message, or as one message.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Sentences(pub Vec<Message>);
+
+impl fmt::Display for Sentences {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, message) in self.0.iter().enumerate() {
+            write!(f, "{}{message}", if index == 0 { "" } else { " " })?;
+        }
+        Ok(())
+    }
+}
+
 /// As its text.
 impl Serialize for Message {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -148,7 +161,7 @@ macro_rules! messages {
         $($member:ident $({ $($value:ident: $kind:ty),* $(,)? })? $words:literal,)*
     }) => {
         $(#[$of])*
-        #[derive(Clone, Debug)]
+        #[derive(Clone, Debug, PartialEq)]
         #[allow(missing_docs, reason = "the values stand in the words, and those behind each member")]
         $visible enum $name {
             $(#[doc = $words] $member $({ $($value: $kind),* })?,)*

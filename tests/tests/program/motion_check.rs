@@ -104,7 +104,7 @@ impl Driven {
     fn wrong(&self, kind: Kind, words: &[&str]) -> Option<String> {
         let is_right = match &self.findings[..] {
             [finding] => {
-                let sentence = &finding.sentence;
+                let sentence = finding.sentence.to_string();
                 (finding.kind, finding.motor) == (kind, Motor::M1)
                     && finding.is_fault() == (kind != Kind::Stands)
                     && sentence.ends_with('.')

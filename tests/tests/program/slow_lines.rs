@@ -6,10 +6,10 @@ use std::fmt::Debug;
 use std::time::Duration;
 
 use brushwork_core::keep::TrialKeeper;
+use brushwork_core::messages::EndedMessage;
 use brushwork_core::session::line::SimulatedLine;
 use brushwork_core::tune::law::{Report, Request as Tuning, Setup};
 use brushwork_core::tune::live::Live;
-use brushwork_core::tune::sequence::NOT_ARMED;
 use brushwork_core::tune::{Slot, Target, leaves_off, prepare, restore, run, take};
 use brushwork_family::simulator;
 use brushwork_link::device::{
@@ -313,7 +313,9 @@ fn tune<M: Machine + 'static>(
     let report = take(&found);
     let leaves_off = leaves_off(report.as_ref(), None);
     link.finish(restore(target, before, report.as_ref(), leaves_off, &keeper), minutes(5));
-    armed.map(|()| report.expect("a run leaves its report")).map_err(|why| format!("{why} {NOT_ARMED}"))
+    armed
+        .map(|()| report.expect("a run leaves its report"))
+        .map_err(|why| format!("{why} {}", EndedMessage::NotArmed))
 }
 
 /// What a run keeps on this computer is not looked at here.

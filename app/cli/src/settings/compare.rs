@@ -1,6 +1,7 @@
 //! `brushwork settings compare`: any two of RAM, EEPROM as last known, profile, defaults, backup.
 
 use crate::messages::CliSettingsMessage;
+use brushwork_core::messages::SideMessage;
 use brushwork_link::settings::Profile;
 
 use super::args::CompareArgs;
@@ -10,7 +11,7 @@ use super::side_name::SideName;
 use super::{backups, profile};
 use crate::{Exit, Interrupt, Output, say};
 use brushwork_core::keep::{Store, today};
-use brushwork_core::settings::{EEPROM_UNKNOWN, eeprom_title, known_defaults};
+use brushwork_core::settings::{eeprom_title, known_defaults};
 
 /// Compares and prints.
 pub fn run(args: &CompareArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
@@ -54,7 +55,7 @@ fn side(name: &SideName, controller: Option<&Controller<'_>>, other: Option<Side
         }
         (SideName::Eeprom, Some(controller)) => {
             let known = Store::of_user().eeprom(&controller.unit);
-            let known = known.ok_or_else(|| Exit::Refused.saying(EEPROM_UNKNOWN))?;
+            let known = known.ok_or_else(|| Exit::Refused.saying(SideMessage::EepromUnknown))?;
             Ok(Side::new(eeprom_title(&known), known))
         }
         (SideName::Default, None) => {

@@ -5,7 +5,7 @@ mod replay;
 mod words;
 
 use crate::messages::CliTuneMessage;
-use brushwork_core::messages::TuneMessage;
+use brushwork_core::messages::{EndedMessage, TuneMessage};
 use std::time::{Duration, Instant};
 
 use brushwork_link::{ArmScope, Event, Request, SettingsTable};
@@ -144,7 +144,7 @@ fn carry_out(
         if interrupt.is_raised() && !stopped {
             stopped = true;
             device.stop_all();
-            sequence.abort("it was stopped");
+            sequence.abort(EndedMessage::Stopped);
         }
         device.renew();
         match sequence.next(armed, || Some(origin.clone())) {

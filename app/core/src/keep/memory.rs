@@ -1,5 +1,6 @@
 //! What is known of a unit's EEPROM: its content as last proven, and how often it was written from here.
 
+use brushwork_link::Message;
 use std::fs;
 use std::path::PathBuf;
 
@@ -9,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::store::{KeepError, Store};
 use super::unit::{OWNER, UnitId};
 use crate::examine::RawWrite;
+use crate::messages::WearMessage;
 
 const EEPROM: &str = "eeprom";
 const WEAR: &str = "wear";
@@ -51,22 +53,18 @@ impl Wear {
     }
 
     /// The count in a sentence, with a warning where one is due.
-    pub fn sentence(&self) -> String {
+    pub fn sentence(&self) -> Message {
+        let since = self.since.clone();
         let count = match self.saves {
-            0 => return "No save to this EEPROM was counted yet.".to_owned(),
-            1 => format!("1 save to this EEPROM was counted, {}.", self.since),
-            saves => format!("{saves} saves to this EEPROM were counted since {}.", self.since),
+            0 => WearMessage::None,
+            1 => WearMessage::One { since },
+            saves => WearMessage::Saves { saves, since },
         };
-        let warning = match self.level() {
-            WearLevel::Fine => return count,
-            WearLevel::Half => {
-                "is half worn if it is flash that stands in for EEPROM; save only what is to last"
-            }
-            WearLevel::Worn => {
-                "may be worn out; check after each save that it took, and save only what is to last"
-            }
-        };
-        format!("{count} It {warning} (assumed: {ENDURANCE} writes).")
+        match self.level() {
+            WearLevel::Fine => count.into(),
+            WearLevel::Half => WearMessage::Half { count: count.into(), endurance: ENDURANCE }.into(),
+            WearLevel::Worn => WearMessage::Worn { count: count.into(), endurance: ENDURANCE }.into(),
+        }
     }
 }
 
@@ -153,7 +151,7 @@ mod tests {
         assert_eq!(wear(0).sentence(), "No save to this EEPROM was counted yet.");
         assert_eq!(wear(4999).sentence(), "4999 saves to this EEPROM were counted since 2026-01-05.");
         assert_eq!(wear(5000).level(), WearLevel::Half);
-        assert!(wear(5000).sentence().contains("half worn"));
-        assert!(wear(10_000).sentence().contains("worn out"));
+        assert!(wear(5000).sentence().to_string().contains("half worn"));
+        assert!(wear(10_000).sentence().to_string().contains("worn out"));
     }
 }

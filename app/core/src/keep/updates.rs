@@ -1,12 +1,14 @@
 //! Firmware updates that were begun: kept until a controller answers at that place again, so that a silent line is not taken for a
 //! wrong baud rate.
 
+use brushwork_link::Message;
 use std::fs;
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
 use super::store::{KeepError, Store};
+use crate::messages::UpdateMessage;
 
 const FOLDER: &str = "updates";
 /// Longer names of files are cut; the text inside tells two that agree so far apart.
@@ -30,19 +32,15 @@ pub struct OpenUpdate {
 impl OpenUpdate {
     /// What to know when nobody answers at its place.
     #[must_use]
-    pub fn sentence(&self) -> String {
-        format!(
-            "An update of the {} at {} was begun and did not end. It may wait in its firmware loader, where it answers nothing else \
-             (STAT1 and STAT2 light in turns). Switch it off and on; if it still does not answer, resume the update: \
-             brushwork firmware update {} --connect {} --resume --model {}. Its settings are in the backup {}. \
-             Should a controller of another family be there now, name it: family=KEY.",
-            self.before,
-            self.place,
-            self.file.display(),
-            self.place,
-            self.model,
-            self.backup
-        )
+    pub fn sentence(&self) -> Message {
+        UpdateMessage::Begun {
+            unit: self.before.clone(),
+            place: self.place.clone(),
+            file: self.file.display().to_string(),
+            model: self.model.clone(),
+            backup: self.backup.clone(),
+        }
+        .into()
     }
 }
 
@@ -97,7 +95,7 @@ mod tests {
         store.open_update(&update).unwrap();
         assert_eq!(store.update_at("/dev/ttyACM0"), Some(update.clone()));
         assert_eq!(store.update_at("/dev-ttyACM0"), None, "the same file, another place");
-        let sentence = update.sentence();
+        let sentence = update.sentence().to_string();
         assert!(sentence.contains("--connect /dev/ttyACM0 --resume --model mcp266"), "{sentence}");
         store.close_update("/dev-ttyACM0");
         assert!(store.update_at("/dev/ttyACM0").is_some());

@@ -5,8 +5,10 @@
 //! runs, a firmware that does not tell a signal, a motor without an encoder and a limit that the unit reports are no faults. A cause
 //! is named where nothing else would look the same; otherwise all that is left is named.
 
+use brushwork_link::Message;
 use std::time::Duration;
 
+use crate::messages::{CommandedMessage, MotionMessage, NoOutputMessage, StandsMessage};
 use brushwork_link::device::{Channel, Drive, DriveCommand, Event, Role, Sample, StatusReport};
 use brushwork_values::Motor;
 
@@ -67,7 +69,7 @@ pub struct Finding {
     /// What it does.
     pub kind: Kind,
     /// The same for a person, with what to do.
-    pub sentence: String,
+    pub sentence: Message,
 }
 
 impl Finding {
@@ -234,9 +236,9 @@ impl MotionCheck {
         axis.position = measured.counts.or(axis.position);
         let status = self.status.as_ref();
         let watch = axis.watch.as_mut().filter(|watch| !watch.is_told && measured.at > watch.sent_at)?;
-        let (kind, what) = watch.judge(&measured, before, axis.is_alive, motor, status)?;
+        let (kind, said) = watch.judge(&measured, before, axis.is_alive, motor, status)?;
         watch.is_told = true;
-        Some(Finding { motor, kind, sentence: format!("{motor} {what}") })
+        Some(Finding { motor, kind, sentence: said.into() })
     }
 }
 
@@ -274,7 +276,7 @@ impl Watch {
         is_alive: bool,
         motor: Motor,
         status: Option<&StatusReport>,
-    ) -> Option<(Kind, String)> {
+    ) -> Option<(Kind, MotionMessage)> {
         self.readings += 1;
         if self.from.is_none() {
             self.from = measured.counts;
@@ -284,12 +286,12 @@ impl Watch {
             self.has_restarted |= before.abs() >= COUNTS_BEFORE && counts.abs() * 10.0 < before.abs();
         }
         if let Some(percent) = measured.percent
-            && let Some(found) = self.swings(percent, measured.at)
+            && let Some(found) = self.swings(percent, measured.at, motor)
         {
             return Some(found);
         }
         let is_due = self.is_due(measured.at) && self.is_on_its_way(measured.counts);
-        self.gives_nothing(measured, is_due, status)
+        self.gives_nothing(measured, is_due, motor, status)
             .or_else(|| self.stands(measured, is_due, is_alive, motor, status))
     }
 
@@ -346,55 +348,47 @@ impl Watch {
     }
 
     /// "25.0 % duty", "12000 counts/s".
-    fn commanded(&self) -> String {
+    fn commanded(&self) -> Message {
         match self.command {
-            DriveCommand::Duty { duty, .. } => format!("a duty of {:.1} %", duty * 100.0),
-            DriveCommand::Speed { speed_counts_per_s, .. } => {
-                format!("a speed of {speed_counts_per_s} counts/s")
-            }
-            DriveCommand::Distance { distance_counts, .. } => format!("a move by {distance_counts} counts"),
-            DriveCommand::Position { position_counts, .. } => format!("a move to {position_counts}"),
+            DriveCommand::Duty { duty, .. } => CommandedMessage::Duty { percent: duty * 100.0 },
+            DriveCommand::Speed { speed_counts_per_s, .. } => CommandedMessage::Speed { speed_counts_per_s },
+            DriveCommand::Distance { distance_counts, .. } => CommandedMessage::Distance { distance_counts },
+            DriveCommand::Position { position_counts, .. } => CommandedMessage::Position { position_counts },
         }
+        .into()
     }
 
     fn gives_nothing(
         &mut self,
         measured: &Measured,
         is_due: bool,
+        motor: Motor,
         status: Option<&StatusReport>,
-    ) -> Option<(Kind, String)> {
+    ) -> Option<(Kind, MotionMessage)> {
         let percent = measured.percent?;
         let is_nothing = is_due && percent.abs() < NOTHING_PERCENT;
         let held = self.nothing.note(is_nothing, measured.at, measured.amps, percent)?;
         if held < NO_OUTPUT_FOR {
             return None;
         }
-        let told = format!("gets no output, though {} was commanded and confirmed.", self.commanded());
-        if self.has_restarted {
-            let why = "The controller has started anew, as its counts show, which begin at 0 again: its power was lost for a moment. \
-                       Check the supply and its leads. What was not saved is forgotten";
-            return Some((Kind::StartedAnew, format!("{told} {why}.")));
-        }
-        Some((Kind::NoOutput, format!("{told} {}", self.left_over(status))))
+        let (kind, why) = match self.has_restarted {
+            true => (Kind::StartedAnew, NoOutputMessage::StartedAnew.into()),
+            false => (Kind::NoOutput, self.left_over(status)),
+        };
+        Some((kind, MotionMessage::NoOutput { motor, commanded: self.commanded(), why }))
     }
 
     /// What is left as the reason for no output.
-    fn left_over(&self, status: Option<&StatusReport>) -> String {
-        let of_loop = if self.is_loop() { " gains or a full speed (QPPS) of 0," } else { "" };
-        let left = format!(
-            "a fault of the bridge that it does not report (a driver fault, a short circuit), a loss of power for a moment,{of_loop} or an \
-             input or script that holds the motor. Check the motor and its leads, look at `brushwork status`, and switch the controller off and on \
-             before the next try."
-        );
-        let Some(status) = status else {
-            return format!(
-                "This firmware does not tell its status, so the reason is not known; it may be {left}"
-            );
+    fn left_over(&self, status: Option<&StatusReport>) -> Message {
+        let left: Message = match self.is_loop() {
+            true => NoOutputMessage::LeftOfLoop.into(),
+            false => NoOutputMessage::Left.into(),
         };
+        let Some(status) = status else { return NoOutputMessage::Untold { left }.into() };
         let titles: Vec<&str> = status.active().map(|indicator| indicator.title).collect();
         match &titles[..] {
-            [] => format!("Its status names no reason. What is left is {left}"),
-            titles => format!("It reports: {}. If that is not the reason, it is {left}", titles.join(", ")),
+            [] => NoOutputMessage::NotNamed { left }.into(),
+            titles => NoOutputMessage::Named { titles: titles.join(", "), left }.into(),
         }
     }
 
@@ -405,7 +399,7 @@ impl Watch {
         is_alive: bool,
         motor: Motor,
         status: Option<&StatusReport>,
-    ) -> Option<(Kind, String)> {
+    ) -> Option<(Kind, MotionMessage)> {
         let counts = measured.counts?;
         let is_limited = status.is_some_and(|status| is_at_current_limit(status, motor));
         // Where the output is not told, that of an open loop is what was commanded.
@@ -429,34 +423,30 @@ impl Watch {
             return None;
         }
         let amps = self.standing.mean_amps();
-        let output = match measured.percent {
-            Some(_) => format!("stands still at an output of {percent:.1} %"),
-            None => format!(
-                "stands still; {} was commanded, and this firmware does not tell its output",
-                self.commanded()
-            ),
+        let output: Message = match measured.percent {
+            Some(_) => StandsMessage::AtOutput { percent }.into(),
+            None => StandsMessage::Untold { commanded: self.commanded() }.into(),
         };
-        let current = amps.map_or_else(String::new, |amps| format!(" and {amps:.2} A"));
+        let output = match amps {
+            Some(amps) => StandsMessage::WithCurrent { output, amps }.into(),
+            None => output,
+        };
         let is_certain = self.is_loop() || is_alive || is_limited;
         Some(if !self.is_loop() && percent < FRICTION_PERCENT && !is_limited {
-            let why = "so little may not break it loose from its friction. Give more, or see that it is free";
-            (Kind::Stands, format!("{output}{current}: {why}."))
+            (Kind::Stands, MotionMessage::Friction { motor, output })
         } else if !is_certain {
-            let why = "it does not move, or has no encoder that this controller reads";
-            (Kind::Stands, format!("{output}{current}, and no counts came since the connection: {why}."))
+            (Kind::Stands, MotionMessage::NoCounts { motor, output })
         } else if amps.is_some_and(|amps| amps < NO_CURRENT_AMPS) {
-            let why = "hardly any current flows, so look for an open motor lead";
-            (Kind::Stall, format!("{output}{current}: {why}."))
+            (Kind::Stall, MotionMessage::OpenLead { motor, output })
+        } else if is_limited {
+            (Kind::Stall, MotionMessage::BlockedAtLimit { motor, output })
         } else {
-            let limit = if is_limited { ", at its current limit" } else { "" };
-            let why = "it is blocked, at an end stop, carries more than this output moves, or its encoder has ceased to count. Free \
-                       the shaft, or check the encoder";
-            (Kind::Stall, format!("{output}{current}{limit}: {why}."))
+            (Kind::Stall, MotionMessage::Blocked { motor, output })
         })
     }
 
     /// An output that goes to and fro by a loop whose setpoint stands.
-    fn swings(&mut self, percent: f64, at: Duration) -> Option<(Kind, String)> {
+    fn swings(&mut self, percent: f64, at: Duration, motor: Motor) -> Option<(Kind, MotionMessage)> {
         if !self.is_loop() || percent.abs() < SWING_PERCENT {
             return None;
         }
@@ -474,15 +464,11 @@ impl Watch {
             return None;
         }
         let (low, high) = (last.min(percent), last.max(percent));
-        let since_s = at.saturating_sub(self.reversals[0].1).as_secs_f64();
+        let seconds = at.saturating_sub(self.reversals[0].1).as_secs_f64();
+        let (reversals, commanded) = (self.reversals.len(), self.commanded());
         Some((
             Kind::LimitCycle,
-            format!(
-                "swings to and fro in a limit cycle: its loop gives {low:.0} % and {high:.0} % in turn ({} reversals in {since_s:.1} s), though {} was \
-                 commanded. Its gains are too high for this machine, or its encoder counts the wrong way: lower them, or tune the loop.",
-                self.reversals.len(),
-                self.commanded(),
-            ),
+            MotionMessage::LimitCycle { motor, low, high, reversals, seconds, commanded },
         ))
     }
 }
@@ -601,7 +587,7 @@ mod tests {
         let mut check = driven(QUARTER);
         check.take(&Event::Status(StatusReport::new(0x80, ms(1001), 1, &LIMIT)));
         let said = (1..60).find_map(|n| check.take(&sweep(1000 + 20 * n, &[(Channel::M1_PWM, 0.0)])));
-        let sentence = said.expect("it is found").sentence;
+        let sentence = said.expect("it is found").sentence.to_string();
         assert!(sentence.contains("It reports: Positive limit input at ground."), "{sentence}");
     }
 

@@ -7,6 +7,7 @@
 use std::ops::RangeInclusive;
 use std::time::Duration;
 
+use crate::messages::ProfilePlanMessage;
 use brushwork_link::device::DriveCommand;
 
 /// In which a move on the Position screen that is to be a step reaches its full speed.
@@ -145,7 +146,7 @@ pub fn setpoint_text(command: &DriveCommand) -> String {
 }
 
 /// The legs of a profile, or why there are none: a sentence.
-pub fn legs(mode: Mode, profile: &Profile, pace: Pace, reach: Reach) -> Result<Vec<Leg>, String> {
+pub fn legs(mode: Mode, profile: &Profile, pace: Pace, reach: Reach) -> Result<Vec<Leg>, ProfilePlanMessage> {
     check(mode, profile, pace, reach)?;
     let planner = Planner { mode, profile, pace, reach };
     let mut legs = planner.lead_in();
@@ -155,11 +156,7 @@ pub fn legs(mode: Mode, profile: &Profile, pace: Pace, reach: Reach) -> Result<V
     legs.extend(planner.lead_out());
     let time: Duration = legs.iter().map(Leg::time).sum();
     if time > LONGEST {
-        return Err(format!(
-            "This would take {:.0} s, more than the {} s allowed. Choose a lower count or a shorter dwell.",
-            time.as_secs_f64(),
-            LONGEST.as_secs()
-        ));
+        return Err(ProfilePlanMessage::TooLong { seconds: time.as_secs_f64(), longest: LONGEST.as_secs() });
     }
     Ok(legs)
 }
@@ -169,33 +166,28 @@ pub fn total_time(legs: &[Leg]) -> Duration {
     legs.iter().map(Leg::time).sum()
 }
 
-fn check(mode: Mode, profile: &Profile, pace: Pace, reach: Reach) -> Result<(), String> {
+fn check(mode: Mode, profile: &Profile, pace: Pace, reach: Reach) -> Result<(), ProfilePlanMessage> {
     let unit = mode.unit();
     if !DWELL_RANGE_S.contains(&profile.dwell_s) || !COUNT_RANGE.contains(&profile.count) {
-        return Err("Dwell is 0.1 to 60 s, count 1 to 1000.".to_owned());
+        return Err(ProfilePlanMessage::Bounds);
     }
     if profile.from == profile.to || !profile.from.is_finite() || !profile.to.is_finite() {
-        return Err(
-            "From and To are the same, so nothing would move. Choose two different values.".to_owned()
-        );
+        return Err(ProfilePlanMessage::NoTravel);
     }
     let by_points = profile.shape == Shape::Jog && mode != Mode::Position;
     let asked = if by_points { vec![profile.rate, -profile.rate] } else { vec![profile.from, profile.to] };
     if asked.iter().any(|value| *value < reach.low || *value > reach.high) {
-        return Err(format!(
-            "The setpoints of the chosen motors go from {:.0} to {:.0} {unit}. Choose values in between.",
-            reach.low, reach.high
-        ));
+        return Err(ProfilePlanMessage::OutOfReach { low: reach.low, high: reach.high, unit });
     }
     if by_points && profile.rate <= 0.0 {
-        return Err("The speed between the two points is 0. Choose how fast to go.".to_owned());
+        return Err(ProfilePlanMessage::NoSpeed);
     }
     if profile.shape == Shape::Trapezoid && (pace.accel <= 0.0 || mode == Mode::Position && pace.decel <= 0.0)
     {
-        return Err("A trapezoid needs an acceleration other than 0. Set it beside the sliders.".to_owned());
+        return Err(ProfilePlanMessage::NoAcceleration);
     }
     if mode == Mode::Position && reach.qpps < 1.0 {
-        return Err("QPPS is 0, so no position can be reached. Set QPPS first.".to_owned());
+        return Err(ProfilePlanMessage::NoQpps);
     }
     Ok(())
 }
@@ -413,7 +405,7 @@ mod tests {
 
     #[test]
     fn what_cannot_be_done_is_refused_in_a_sentence() {
-        let refused = |mode, profile, pace| legs(mode, &profile, pace, REACH).unwrap_err();
+        let refused = |mode, profile, pace| legs(mode, &profile, pace, REACH).unwrap_err().to_string();
         let step = profile(Shape::Step);
         assert!(refused(Mode::Speed, Profile { to: 10_001.0, ..step }, PACE).contains("-10000 to 10000"));
         assert!(refused(Mode::Speed, Profile { to: 0.0, ..step }, PACE).contains("the same"));

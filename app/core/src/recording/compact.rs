@@ -17,6 +17,7 @@
 //! that the value is that many times the code's step ([`STEPS`]); they are used only where that gives the very same
 //! value. Code 7 is followed by the eight bytes of the value, little endian.
 
+use brushwork_link::Message;
 use std::collections::HashMap;
 use std::io::{Read, Write};
 use std::time::{Duration, SystemTime};
@@ -24,6 +25,7 @@ use std::time::{Duration, SystemTime};
 use serde::{Deserialize, Serialize};
 
 use super::{Column, Head, Reading, Record, RecordingError};
+use crate::messages::{DamageMessage, RecordingMessage};
 
 const MAGIC: [u8; 8] = *b"BWREC\x01\r\n";
 const VERSION: u32 = 1;
@@ -230,7 +232,7 @@ pub fn read(
     path: &str,
     begin: impl FnOnce(&Head),
     mut take: impl FnMut(Record) -> bool,
-) -> Result<Option<String>, RecordingError> {
+) -> Result<Option<Message>, RecordingError> {
     let no_recording = |what: &str| RecordingError::Compact { path: path.to_owned(), what: what.to_owned() };
     let mut magic = [0; MAGIC.len()];
     match input.read_exact(&mut magic) {
@@ -263,18 +265,16 @@ pub fn read(
                             }
                         }
                         Ok(None) => break None,
-                        Err(Damaged) => break Some("holds a record that makes no sense"),
+                        Err(Damaged) => break Some(DamageMessage::Senseless),
                     }
                 }
             }
-            Framed::CutOff => Some("ends in the middle of a block"),
-            Framed::Damaged => Some("is damaged"),
+            Framed::CutOff => Some(DamageMessage::CutOff),
+            Framed::Damaged => Some(DamageMessage::Damaged),
         };
         if let Some(damage) = damage {
             let seconds = last_us as f64 / 1e6;
-            return Ok(Some(format!(
-                "The file {damage} after {seconds:.3} s; what stands before that is shown."
-            )));
+            return Ok(Some(RecordingMessage::InPart { damage, seconds }.into()));
         }
     }
 }
@@ -445,7 +445,7 @@ mod tests {
             true
         };
         let damage = read(file, "run.bwr", |found| head = Some(found.clone()), take).unwrap();
-        (head, records, damage)
+        (head, records, damage.map(|damage| damage.to_string()))
     }
 
     fn value() -> impl Strategy<Value = f64> {

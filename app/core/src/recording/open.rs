@@ -1,5 +1,6 @@
 //! Opens a recording of either form, told apart by how it begins.
 
+use brushwork_link::Message;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
@@ -15,7 +16,7 @@ pub fn read(
     path: &Path,
     begin: impl FnMut(&Head),
     take: impl FnMut(Record) -> bool,
-) -> Result<Option<String>, RecordingError> {
+) -> Result<Option<Message>, RecordingError> {
     let name = path.display().to_string();
     let io = |source| RecordingError::Io { path: name.clone(), source };
     let mut file = File::open(path).map_err(io)?;

@@ -1,5 +1,6 @@
 //! Writes a recording as data comes in, on a thread of its own: hours fit, and the window never waits for the disk.
 
+use brushwork_link::Message;
 use std::fs::OpenOptions;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -12,6 +13,7 @@ use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TrySendError, bounde
 use super::compact::CompactWriter;
 use super::csv::{CsvWriter, Times};
 use super::{Form, Head, Record};
+use crate::messages::RecordingMessage;
 
 /// Records that may wait for the disk: more than four seconds at a thousand a second.
 const QUEUE: usize = 4096;
@@ -29,7 +31,7 @@ pub struct Progress {
     /// Records that the disk was too slow for.
     pub dropped: u64,
     /// Set once the file is closed: whether it is whole, or why it is not, in a sentence.
-    pub ended: Option<Result<(), String>>,
+    pub ended: Option<Result<(), Message>>,
 }
 
 /// A recording under way.
@@ -188,15 +190,14 @@ fn lock(progress: &Mutex<Progress>) -> MutexGuard<'_, Progress> {
 }
 
 #[allow(clippy::wildcard_enum_match_arm, reason = "the enum is not ours")]
-fn sentence(path: &str, error: &std::io::Error) -> String {
+fn sentence(path: &str, error: &std::io::Error) -> Message {
     let remedy = match error.kind() {
-        std::io::ErrorKind::StorageFull | std::io::ErrorKind::QuotaExceeded => {
-            "Make room on the disk, or choose another folder"
-        }
-        std::io::ErrorKind::PermissionDenied => "Choose a folder that you may write to",
-        _ => "Choose another folder",
+        std::io::ErrorKind::StorageFull | std::io::ErrorKind::QuotaExceeded => RecordingMessage::MakeRoom,
+        std::io::ErrorKind::PermissionDenied => RecordingMessage::NotPermitted,
+        _ => RecordingMessage::Elsewhere,
     };
-    format!("Could not record to {path}: {error}. What was written before that is kept. {remedy}.")
+    let (path, error) = (path.to_owned(), error.to_string());
+    RecordingMessage::NotRecorded { path, error, remedy: remedy.into() }.into()
 }
 
 #[cfg(test)]
@@ -224,7 +225,7 @@ mod tests {
         }])
     }
 
-    fn settled(recorder: &Recorder) -> Result<(), String> {
+    fn settled(recorder: &Recorder) -> Result<(), Message> {
         until_some("the end", || recorder.progress().ended, || format!("{:?}", recorder.progress()))
     }
 
@@ -249,7 +250,7 @@ mod tests {
         let path = folder.path().join("run.csv");
         std::fs::write(&path, "precious").unwrap();
         let recorder = Recorder::start(&path, Form::Csv, head()).unwrap();
-        assert!(settled(&recorder).unwrap_err().contains("Choose another folder"));
+        assert!(settled(&recorder).unwrap_err().to_string().contains("Choose another folder"));
         drop(recorder);
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "precious");
     }
@@ -263,7 +264,7 @@ mod tests {
         };
         let recorder = Recorder::into(path, Form::Compact, head(), open).unwrap();
         recorder.record(sample(1));
-        let reported = settled(&recorder).unwrap_err();
+        let reported = settled(&recorder).unwrap_err().to_string();
         assert!(reported.starts_with("Could not record to /dev/full: No space left"), "{reported}");
         assert!(reported.ends_with("Make room on the disk, or choose another folder."), "{reported}");
         recorder.record(sample(2));

@@ -15,7 +15,7 @@ use brushwork_link::transport::ConnectTarget;
 use brushwork_link::{Failure, Message, SystemClock};
 use serde::Serialize;
 
-use crate::messages::{CoreActMessage, CoreRemedyMessage};
+use crate::messages::{BusMessage, CoreActMessage, CoreRemedyMessage};
 
 use super::{SessionError, SessionOptions, Simulation, connect, on_can, open};
 
@@ -70,15 +70,11 @@ impl BusList {
 impl Started {
     /// What it means, as a sentence.
     #[must_use]
-    pub fn sentence(self, node: NodeId) -> String {
+    pub fn message(self, node: NodeId) -> Message {
         match self {
-            Self::Operational => format!("The start was sent, and {node} says that it is operational."),
-            Self::Still(state) => format!(
-                "The start was sent, and {node} still says that it is {state}. Look into its own tool why it does not start."
-            ),
-            Self::NotTold => {
-                format!("The start was sent. {node} sends no heartbeat that would tell what came of it.")
-            }
+            Self::Operational => BusMessage::Operational { node }.into(),
+            Self::Still(state) => BusMessage::Still { node, state: state.to_string() }.into(),
+            Self::NotTold => BusMessage::NotTold { node }.into(),
         }
     }
 }
@@ -87,9 +83,9 @@ impl Started {
 ///
 /// # Errors
 /// The line cannot be opened, or the target is no CAN adapter.
-pub fn look(target: &ConnectTarget, goes_on: &dyn Fn() -> bool) -> Result<BusList, String> {
+pub fn look(target: &ConnectTarget, goes_on: &dyn Fn() -> bool) -> Result<BusList, Message> {
     let options = SessionOptions { poll: PollRate::Off, ..SessionOptions::default() };
-    let session = open(target, options, SystemClock::shared(), None).map_err(|error| error.to_string())?;
+    let session = open(target, options, SystemClock::shared(), None).map_err(Message::error)?;
     let monitor = session.bus.as_ref().ok_or_else(|| no_adapter(target))?;
     let begun_at = Instant::now();
     while goes_on() && begun_at.elapsed() < SEARCH_LIMIT {
@@ -101,7 +97,7 @@ pub fn look(target: &ConnectTarget, goes_on: &dyn Fn() -> bool) -> Result<BusLis
             Ok(_) | Err(_) => {}
         }
     }
-    Err(format!("Could not list the nodes: the search did not end within {} s.", SEARCH_LIMIT.as_secs()))
+    Err(BusMessage::NotListed { seconds: SEARCH_LIMIT.as_secs() }.into())
 }
 
 /// Starts one node by an NMT command, and listens for what it says then.
@@ -112,18 +108,18 @@ pub fn start(
     target: &ConnectTarget,
     simulation: Option<Arc<Simulation>>,
     node: NodeId,
-) -> Result<Started, String> {
-    let (transport, simulation) = connect(target, simulation).map_err(|error| error.to_string())?;
+) -> Result<Started, Message> {
+    let (transport, simulation) = connect(target, simulation).map_err(Message::error)?;
     let (_, form) = on_can(target, simulation.as_deref()).ok_or_else(|| no_adapter(target))?;
-    let CanLine { mut transport, monitor, .. } =
-        can_line(transport, &SystemClock::shared(), form).ok_or_else(|| SessionError::NoNodes.to_string())?;
+    let CanLine { mut transport, monitor, .. } = can_line(transport, &SystemClock::shared(), form)
+        .ok_or_else(|| Message::error(SessionError::NoNodes))?;
     monitor.command(Command::Start, node);
     let begun_at = Instant::now();
     let mut bytes = [0; 256];
     while begun_at.elapsed() < START_LIMIT {
         transport.read(&mut bytes, SLICE).map_err(|error| {
             let (tried, remedy) = (CoreActMessage::StartNode { node }, CoreRemedyMessage::CheckAdapter);
-            Failure::new(tried, target.to_string(), Message::error(error), remedy).to_string()
+            Failure::new(tried, target.to_string(), Message::error(error), remedy).message()
         })?;
         if monitor.state(node) == Some(State::Operational) {
             return Ok(Started::Operational);
@@ -132,6 +128,6 @@ pub fn start(
     Ok(monitor.state(node).map_or(Started::NotTold, Started::Still))
 }
 
-fn no_adapter(target: &ConnectTarget) -> String {
-    format!("{target} is no CAN adapter. Write can: in front of an adapter's port.")
+fn no_adapter(target: &ConnectTarget) -> Message {
+    BusMessage::NoAdapter { target: target.to_string() }.into()
 }

@@ -3,7 +3,7 @@
 //! The device thread has let go of the line by then ([`Event::LoaderEntered`](brushwork_link::device::Event::LoaderEntered)). A real unit
 //! comes back as another USB device, so its port is looked for by name; everything else is opened again as it was.
 
-use crate::messages::{CoreActMessage, CoreCauseMessage};
+use crate::messages::{CoreActMessage, CoreCauseMessage, UpdateMessage};
 use brushwork_link::Message;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -107,8 +107,8 @@ impl Upload {
     /// Starts to send `image`.
     ///
     /// # Errors
-    /// The system gives no thread: a sentence without its full stop.
-    pub fn start(place: LoaderPlace, image: Image) -> Result<Self, String> {
+    /// The system gives no thread.
+    pub fn start(place: LoaderPlace, image: Image) -> Result<Self, UpdateMessage> {
         let (events, receiver) = bounded(64);
         let cancelled = Arc::new(AtomicBool::new(false));
         let seen = Arc::clone(&cancelled);
@@ -118,9 +118,7 @@ impl Upload {
             let _ = events.send(UploadEvent::Ended(ended));
         };
         let thread = std::thread::Builder::new().name("firmware".to_owned());
-        thread.spawn(work).map_err(|error| {
-            format!("Could not start the thread that sends the firmware: {error}. Nothing was erased")
-        })?;
+        thread.spawn(work).map_err(|error| UpdateMessage::NoThread { error: error.to_string() })?;
         Ok(Self { events: receiver, cancelled })
     }
 

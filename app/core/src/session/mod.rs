@@ -13,7 +13,7 @@ use brushwork_link::device::{Addresses, DeviceHandle, DeviceOptions, DeviceThrea
 use brushwork_link::driver::{CanLine, can_line};
 use brushwork_link::family::{FamilyRef, families};
 use brushwork_link::transport::{ConnectTarget, OpenError, PortInfo, Stream, Transport, list_ports, ports};
-use brushwork_link::{Clock, FamilyChoice, HiddenSettings};
+use brushwork_link::{Clock, FamilyChoice, HiddenSettings, Message};
 
 use crate::guardian;
 use crate::keep::Store;
@@ -145,7 +145,7 @@ fn settled(target: &ConnectTarget, chosen: FamilyChoice, ports: &[PortInfo]) -> 
 
 /// What is known of a target at which nobody answers: an update that was begun there and did not end.
 #[must_use]
-pub fn waiting_at(target: &str) -> Option<String> {
+pub fn waiting_at(target: &str) -> Option<Message> {
     Store::of_user().update_at(target).map(|update| update.sentence())
 }
 

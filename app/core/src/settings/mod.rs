@@ -53,10 +53,6 @@ pub fn known_defaults(table: &SettingsTable, image: &SettingsImage) -> SettingsI
     known.map(|row| (row.key.clone(), row.default)).collect()
 }
 
-/// Why EEPROM cannot be compared.
-pub const EEPROM_UNKNOWN: &str = "What the EEPROM holds is not known: it is known after a save or a reload \
-                                  that was proven on this computer.";
-
 /// What EEPROM as it was proven last is called.
 #[must_use]
 pub fn eeprom_title(known: &Profile) -> String {

@@ -1,5 +1,6 @@
 //! Reports as files: one entry of the record in a line, so that an error can name the place; and what is wrong with a file that is none.
 
+use brushwork_link::Message;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -9,6 +10,7 @@ use serde_json::Value;
 use serde_json::error::Category;
 
 use super::law::Report;
+use crate::messages::ReportFileMessage;
 
 /// What of a file tells whose it is.
 #[derive(Deserialize)]
@@ -23,8 +25,8 @@ struct Head {
 ///
 /// # Errors
 /// Says why a value cannot be written.
-pub fn text_of(report: &Report) -> Result<String, String> {
-    let reported = |error: serde_json::Error| error.to_string();
+pub fn text_of(report: &Report) -> Result<String, Message> {
+    let reported = |error: serde_json::Error| Message::error(error);
     let mut fields =
         serde_json::to_value(Report { record: Vec::new(), ..report.clone() }).map_err(reported)?;
     let mut text = "{\n".to_owned();
@@ -48,67 +50,50 @@ pub fn text_of(report: &Report) -> Result<String, String> {
 ///
 /// # Errors
 /// Says what was tried, why it failed and what to do.
-pub fn write(report: &Report, path: &Path) -> Result<(), String> {
-    let written =
-        text_of(report).and_then(|text| std::fs::write(path, text).map_err(|error| error.to_string()));
-    written.map_err(|error| {
-        format!("Could not write the report to {}: {error}. Choose another place.", path.display())
-    })
+pub fn write(report: &Report, path: &Path) -> Result<(), Message> {
+    let written = text_of(report).and_then(|text| std::fs::write(path, text).map_err(Message::error));
+    written.map_err(|error| ReportFileMessage::NotWritten { path: path.display().to_string(), error }.into())
 }
 
 /// Reads a report.
 ///
 /// # Errors
 /// Says what was tried, where the file is wrong, and what to do.
-pub fn read(path: &Path) -> Result<Report, String> {
-    let reported = |why: String| format!("Could not read a report from {}: {why}", path.display());
-    let text = std::fs::read_to_string(path)
-        .map_err(|error| reported(format!("{error}. Choose a file that a tuning run wrote.")))?;
+pub fn read(path: &Path) -> Result<Report, Message> {
+    let reported = |why: ReportFileMessage| {
+        ReportFileMessage::NotRead { path: path.display().to_string(), why: why.into() }.into()
+    };
+    let no_file = |error: std::io::Error| ReportFileMessage::NoFile { error: error.to_string() };
+    let text = std::fs::read_to_string(path).map_err(|error| reported(no_file(error)))?;
     parse(&text).map_err(reported)
 }
 
-fn parse(text: &str) -> Result<Report, String> {
+fn parse(text: &str) -> Result<Report, ReportFileMessage> {
     let head: Head = serde_json::from_str(text).map_err(|error| no_json(text, &error))?;
     if let Some(format) = head.format.filter(|format| *format > FORMAT) {
-        return Err(format!(
-            "it is a report of form {format}, written by a newer Brushwork; this one knows form {FORMAT}. Update Brushwork."
-        ));
+        return Err(ReportFileMessage::Newer { format, known: FORMAT });
     }
     if head.request.is_none() || head.verdict.is_none() || head.record.is_none() {
         let missing = if head.record.is_none() { "record" } else { "request or verdict" };
-        return Err(format!(
-            "it holds no {missing}, so it is no tuning report. Choose a file that a tuning run wrote."
-        ));
+        return Err(ReportFileMessage::Lacks { missing });
     }
     serde_json::from_str(text).map_err(|error| {
         let (line, column) = (error.line(), error.column());
-        let field =
-            field_before(text, line, column).map_or_else(String::new, |field| format!(", field {field}"));
-        format!(
-            "line {line}, column {column}{field}: {}. It was changed, or written by another version.",
-            bare(&error)
-        )
+        let what = bare(&error);
+        match field_before(text, line, column) {
+            Some(field) => ReportFileMessage::WrongField { line, column, field, what },
+            None => ReportFileMessage::WrongValue { line, column, what },
+        }
     })
 }
 
-fn no_json(text: &str, error: &serde_json::Error) -> String {
-    let (line, column) = (error.line(), error.column());
+fn no_json(text: &str, error: &serde_json::Error) -> ReportFileMessage {
+    let (line, column, what) = (error.line(), error.column(), bare(error));
     match error.classify() {
-        Category::Eof if text.trim().is_empty() => {
-            "it is empty. Choose a file that a tuning run wrote.".to_owned()
-        }
-        Category::Eof => {
-            format!("it is cut short: it ends at line {line}, column {column}. Save the report again.")
-        }
-        Category::Data => {
-            format!("line {line}, column {column}: {}. It is no tuning report, or was changed.", bare(error))
-        }
-        Category::Syntax | Category::Io => {
-            format!(
-                "line {line}, column {column} is no JSON: {}. Choose a file that a tuning run wrote.",
-                bare(error)
-            )
-        }
+        Category::Eof if text.trim().is_empty() => ReportFileMessage::Empty,
+        Category::Eof => ReportFileMessage::CutShort { line, column },
+        Category::Data => ReportFileMessage::NoReport { line, column, what },
+        Category::Syntax | Category::Io => ReportFileMessage::NoJson { line, column, what },
     }
 }
 
@@ -135,7 +120,7 @@ mod tests {
         "{\n\"request\":{\"method\":\"velocity\"},\n\"verdict\":\"tuned\",\n\"record\":[\n]}\n";
 
     fn refused(text: &str) -> String {
-        parse(text).expect_err("it is no report")
+        parse(text).expect_err("it is no report").to_string()
     }
 
     #[test]

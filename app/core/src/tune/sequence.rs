@@ -9,16 +9,15 @@ use std::fmt;
 use std::sync::PoisonError;
 
 use brushwork_link::device::JobId;
-use brushwork_link::{ArmScope, Event, Failure, Interruption, Job, JobEnding, JobTicket, QueuedJob, Subject};
+use brushwork_link::{
+    ArmScope, Event, Failure, Interruption, Job, JobEnding, JobTicket, Message, QueuedJob, Subject,
+};
 
 use super::law::{Report, Request as TuneRequest, Setup, Trace, Trial, TrialRequest};
 use super::live::Live;
 use super::{self as jobs, Restored, Slot, Target, take};
 use crate::keep::TrialKeeper;
-
-/// Why a run ends that may not move the motor, behind the reasons that arming has given: its own time-out may be one.
-pub const NOT_ARMED: &str = "it could not be armed again with the time-out of a run, 200 ms of silence; where that is too short for the line, connect \
-                             by USB or at 115200 bit/s, with no radio and no network on the way";
+use crate::messages::EndedMessage;
 
 /// How often putting the gains back is asked for again when something breaks into it.
 const MOST_RESTORES: u8 = 4;
@@ -72,7 +71,7 @@ pub enum Why {
     /// A bug, with its last word.
     Panicked(String),
     /// It was ended from outside: why, as a clause.
-    Ended(String),
+    Ended(Message),
 }
 
 impl fmt::Display for Why {
@@ -81,7 +80,7 @@ impl fmt::Display for Why {
             Self::Interrupted(cause) => cause.fmt(f),
             Self::Failed(failure) => failure.fmt(f),
             Self::Panicked(word) => write!(f, "Brushwork had a bug. Its last word: {word}"),
-            Self::Ended(why) => f.write_str(why),
+            Self::Ended(why) => why.fmt(f),
         }
     }
 }
@@ -213,18 +212,18 @@ impl Sequence {
     }
 
     /// Ends it before its end. What runs is interrupted by the device thread; what has not begun does not begin.
-    pub fn abort(&mut self, why: &str) {
+    pub fn abort(&mut self, why: EndedMessage) {
         if self.stage == Stage::Restoring {
             return;
         }
-        self.why.get_or_insert_with(|| Why::Ended(why.to_owned()));
+        self.why.get_or_insert(Why::Ended(why.into()));
         if self.stage == Stage::Arming {
             self.go_to(Stage::Restoring);
         }
     }
 
     /// As [`Sequence::abort`]; the job that runs ends at its next exchange, unless it puts something back.
-    pub fn cancel(&mut self, why: &str) {
+    pub fn cancel(&mut self, why: EndedMessage) {
         if let Asked::Work(ticket) = &self.asked {
             ticket.cancel();
         }
@@ -245,7 +244,7 @@ impl Sequence {
             match armed {
                 Armed::Yes => self.go_to(Stage::Running),
                 Armed::Refused if matches!(self.asked, Asked::Arming) => {
-                    self.abort(NOT_ARMED);
+                    self.abort(EndedMessage::NotArmed);
                 }
                 Armed::Open | Armed::Refused => {}
             }
@@ -388,7 +387,7 @@ impl Sequence {
 
     /// The link is gone: what was not put back is owed.
     pub fn link_ended(mut self) -> Ended {
-        self.why.get_or_insert_with(|| Why::Ended("the link was lost".to_owned()));
+        self.why.get_or_insert(Why::Ended(EndedMessage::LinkLost.into()));
         self.before = self.before.or_else(|| take(&self.setup));
         let owed = self.before;
         self.end(owed)

@@ -6,6 +6,7 @@ use super::App;
 use crate::messages::WindowStatusMessage;
 use crate::model::ConnectionId;
 use crate::tune::model::Afterwards;
+use brushwork_core::messages::EndedMessage;
 use brushwork_link::device::Request;
 use egui::{Context, ViewportCommand};
 
@@ -36,7 +37,7 @@ impl App {
                 ctx.send_viewport_cmd(ViewportCommand::CancelClose);
                 self.links.stop_all();
                 for connection in self.model.connections_mut() {
-                    connection.tune.abort("the window is being closed");
+                    connection.tune.abort(EndedMessage::WindowCloses);
                     connection.tune.want_winding_back();
                     connection.rest();
                 }

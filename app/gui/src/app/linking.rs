@@ -37,7 +37,7 @@ impl App {
             Err(error) => {
                 let (error, remedy) = (Message::error(error), WindowRemedyMessage::TypeTarget);
                 let failure = Failure::new(WindowActMessage::Connect, typed, error, remedy);
-                return self.model.messages.fail(failure.to_string());
+                return self.model.messages.fail(failure.message());
             }
         };
         let place = place_of(&target.to_string());
@@ -70,11 +70,9 @@ impl App {
         let Some(opening) = self.links.get(id).and_then(|link| link.opening.as_ref()) else { return };
         let why = match opening.try_recv() {
             Ok(Ok(link)) => return self.opened(id, link, ctx),
-            Ok(Err(error)) => error.to_string(),
+            Ok(Err(error)) => Message::error(error),
             Err(TryRecvError::Empty) => return ctx.request_repaint_after(OPENING_INTERVAL),
-            Err(TryRecvError::Disconnected) => {
-                "Could not open the link: the system gave no thread. Try again.".to_owned()
-            }
+            Err(TryRecvError::Disconnected) => WindowStatusMessage::NoLinkThread.into(),
         };
         self.links.entry(id).opening = None;
         if let Some(connection) = self.model.connection_mut(id) {
@@ -173,7 +171,7 @@ impl App {
         let (sender, started) = bounded(1);
         let work = move || {
             // A window that was closed meanwhile does not want to know.
-            let _ = sender.send(bus::start(&target, None, node).map(|started| started.sentence(node)));
+            let _ = sender.send(bus::start(&target, None, node).map(|started| started.message(node)));
         };
         // Without a thread the receiver is disconnected, which is told.
         let _ = std::thread::Builder::new().name("start node".to_owned()).spawn(work);

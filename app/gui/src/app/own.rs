@@ -2,7 +2,7 @@
 
 use brushwork_core::keep::Store;
 use brushwork_core::session::firmware::LoaderPlace;
-use brushwork_link::{ConnectTarget, DeviceHandle, Request, SettingsImage};
+use brushwork_link::{ConnectTarget, DeviceHandle, Message, Request, SettingsImage};
 use egui::{Context, ViewportCommand};
 
 use super::App;
@@ -18,7 +18,7 @@ impl Host for App {
         Self::request_of(self, connection, request)
     }
 
-    fn write_ram(&mut self, wanted: SettingsImage) -> Result<(), String> {
+    fn write_ram(&mut self, wanted: SettingsImage) -> Result<(), Message> {
         Self::write_ram(self, wanted)
     }
 

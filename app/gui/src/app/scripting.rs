@@ -95,7 +95,7 @@ impl App {
                 let (on, error) = (path.display().to_string(), Message::error(error));
                 let remedy = WindowRemedyMessage::CheckPath;
                 let failure = Failure::new(WindowActMessage::ReadFile, on, error, remedy);
-                self.model.messages.fail(failure.to_string());
+                self.model.messages.fail(failure.message());
             }
         }
     }
@@ -107,7 +107,7 @@ impl App {
                 let error = WindowCauseMessage::Said { text: error };
                 let remedy = WindowRemedyMessage::ChooseAnother;
                 let failure = Failure::new(WindowActMessage::Download, source.title, error, remedy);
-                return self.model.messages.fail(failure.to_string());
+                return self.model.messages.fail(failure.message());
             }
         };
         match self.model.front.script.begin(download, source) {

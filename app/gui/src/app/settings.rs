@@ -1,8 +1,8 @@
 //! Work with settings that the window asks of the device threads: whole, of the control loops, of inputs, and command by
 //! command. Whatever writes has a backup made first.
 
-use crate::messages::WindowStatusMessage;
-use brushwork_link::{Request, SettingsImage};
+use crate::messages::{TuningMessage, WindowStatusMessage};
+use brushwork_link::{Message, Request, SettingsImage};
 
 use super::App;
 use crate::model::traffic::Transact;
@@ -104,9 +104,9 @@ impl App {
     }
 
     /// Writes values to a unit's RAM, whatever screen they come from and whatever its family: with a backup before, and read back.
-    pub(super) fn write_ram_of(&mut self, id: ConnectionId, wanted: SettingsImage) -> Result<(), String> {
-        let busy = || "The settings are being read or written. Try again in a moment.".to_owned();
-        let none = "No controller is connected.";
+    pub(super) fn write_ram_of(&mut self, id: ConnectionId, wanted: SettingsImage) -> Result<(), Message> {
+        let busy = || Message::from(TuningMessage::SettingsBusy);
+        let none = TuningMessage::NotConnected;
         let connection =
             self.model.connection_mut(id).filter(|connection| connection.is_connected()).ok_or(none)?;
         let stream = connection.link.stream;

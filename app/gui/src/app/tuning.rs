@@ -1,15 +1,16 @@
 //! Guided tuning: its jobs one after the other, its gains into RAM and back, its reports on the disk.
 
 use super::App;
-use crate::messages::WindowStatusMessage;
+use crate::messages::{TuningMessage, WindowStatusMessage};
 use crate::model::loop_settings::key;
 use crate::model::{Arming, ConnectionId, Owner, Tab};
 use crate::tune::registers::image;
 use crate::tune::{Loop, Next, Origin, TuneAction, files};
 use brushwork_core::keep::TrialKeeper;
+use brushwork_core::messages::{EndedMessage, ProfilePlanMessage};
 use brushwork_core::tune::file;
 use brushwork_core::tune::law::AnyRegisters;
-use brushwork_link::{Request, SettingValue, SettingsImage};
+use brushwork_link::{Message, Request, SettingValue, SettingsImage};
 use brushwork_tuning::registers::RegisterTable as _;
 use brushwork_values::Motor;
 
@@ -25,12 +26,12 @@ impl App {
         let stream = front.link.stream;
         let reported = match action {
             TuneAction::Start(_) | TuneAction::Verify if front.is_guided() => {
-                Err("A job runs already. Wait for it or cancel it.".to_owned())
+                Err(ProfilePlanMessage::JobRuns.into())
             }
-            TuneAction::Start(motor) => front.tune.start(which, motor, stream),
-            TuneAction::Verify => front.tune.verify(which, stream),
+            TuneAction::Start(motor) => front.tune.start(which, motor, stream).map_err(Message::from),
+            TuneAction::Verify => front.tune.verify(which, stream).map_err(Message::from),
             TuneAction::Cancel => {
-                front.tune.cancel("it was cancelled");
+                front.tune.cancel(EndedMessage::Cancelled);
                 Ok(())
             }
             TuneAction::Apply => self.apply_gains(which),
@@ -90,13 +91,13 @@ impl App {
     }
 
     /// L and R to 0, with the user's word, so that a duty is a duty.
-    fn clear_winding(&mut self, which: Loop) -> Result<(), String> {
+    fn clear_winding(&mut self, which: Loop) -> Result<(), Message> {
         let front = &self.model.front;
         let motor = front.tune.motor(which);
         let (mut before, mut cleared) = (SettingsImage::default(), SettingsImage::default());
         for name in ["inductance_henries", "resistance_ohms"] {
             let Some(value) = front.settings.unit().and_then(|unit| unit.held(motor, name)) else {
-                return Err("L and R have not been read. Read the settings again first.".to_owned());
+                return Err(TuningMessage::WindingUnread.into());
             };
             before.set(&key(motor, name), SettingValue::Number(value));
             cleared.set(&key(motor, name), SettingValue::Number(0.0));
@@ -125,18 +126,16 @@ impl App {
         }
     }
 
-    fn apply_gains(&mut self, which: Loop) -> Result<(), String> {
+    fn apply_gains(&mut self, which: Loop) -> Result<(), Message> {
         let front = &mut self.model.front;
         let motor = front.tune.motor(which);
         let shown = front.tune.front(which).run().and_then(|run| run.shown.as_ref());
         let Some(registers) = shown.map(|shown| shown.registers) else {
-            return Err("There are no gains to apply. Tune first.".to_owned());
+            return Err(TuningMessage::NothingToApply.into());
         };
         let held = front.held_gains(motor, registers.raw("position.p").is_some());
         if held.is_none() && registers.is_one_set() {
-            return Err(
-                "The registers are being read, so that they can be put back. Apply in a moment.".to_owned()
-            );
+            return Err(TuningMessage::RegistersUnread.into());
         }
         self.write_ram(image(&registers, motor))?;
         self.model.front.tune.front_mut(which).undo = held.map(|held| image(&held, motor));
@@ -144,7 +143,7 @@ impl App {
     }
 
     /// Writes what was turned by hand, and nothing else.
-    fn adjust(&mut self, which: Loop, motor: Motor, registers: AnyRegisters) -> Result<(), String> {
+    fn adjust(&mut self, which: Loop, motor: Motor, registers: AnyRegisters) -> Result<(), Message> {
         let held =
             self.model.front.held_gains(motor, which == Loop::Position).map(|held| image(&held, motor));
         let wanted = image(&registers, motor);
@@ -152,14 +151,14 @@ impl App {
             wanted.iter().filter(|(key, value)| held.as_ref().and_then(|held| held.get(key)) != Some(*value));
         let image: SettingsImage = changed.map(|(key, value)| (key.to_owned(), value)).collect();
         if image.is_empty() {
-            return Err("That changes nothing: the value is at its end already.".to_owned());
+            return Err(TuningMessage::AtItsEnd.into());
         }
         self.write_ram(image)
     }
 
-    fn undo_gains(&mut self, which: Loop) -> Result<(), String> {
+    fn undo_gains(&mut self, which: Loop) -> Result<(), Message> {
         let Some(image) = self.model.front.tune.front(which).undo.clone() else {
-            return Err("Nothing was applied that could be undone.".to_owned());
+            return Err(TuningMessage::NothingToUndo.into());
         };
         self.write_ram(image)?;
         self.model.front.tune.front_mut(which).undo = None;
@@ -167,16 +166,16 @@ impl App {
     }
 
     /// Writes values to RAM of the controller in front, unless it holds them all.
-    pub(super) fn write_ram(&mut self, wanted: SettingsImage) -> Result<(), String> {
+    pub(super) fn write_ram(&mut self, wanted: SettingsImage) -> Result<(), Message> {
         let front = &self.model.front;
-        let unit = front.settings.unit().ok_or("No controller is connected.")?;
+        let unit = front.settings.unit().ok_or(TuningMessage::NotConnected)?;
         if wanted.iter().all(|(key, value)| unit.confirmed(key) == Some(value)) {
-            return Err("The controller holds these values already.".to_owned());
+            return Err(TuningMessage::HeldAlready.into());
         }
         self.write_ram_of(front.id(), wanted)
     }
 
-    fn open_report(&mut self, path: &std::path::Path) -> Result<(), String> {
+    fn open_report(&mut self, path: &std::path::Path) -> Result<(), Message> {
         let report = file::read(path)?;
         let which = files::loop_of(&report);
         let motor = if report.request.guard.motor == 1 { Motor::M2 } else { Motor::M1 };

@@ -4,7 +4,7 @@ use std::any::Any;
 use std::fmt::Debug;
 use std::time::Duration;
 
-use brushwork_link::{Event, Failure, Request, Sample};
+use brushwork_link::{Event, Failure, Message, Request, Sample};
 
 use super::known::Known;
 
@@ -33,7 +33,7 @@ pub trait Own: Any + Debug {
     }
 
     /// Why the window may not be closed now.
-    fn holds_window(&self) -> Option<&'static str> {
+    fn holds_window(&self) -> Option<Message> {
         None
     }
 

@@ -1,5 +1,6 @@
 //! What a person can do with the graph, one word for each: keys, buttons, menus and the palette all end here.
 
+use super::files::Stopping;
 use super::{LiveGraph, MarkKind, TriggerMode};
 
 /// One thing to do.
@@ -118,7 +119,7 @@ impl LiveGraph {
             GraphAction::ToggleLarge => self.large = !self.large,
             GraphAction::RecordCsv => self.record(brushwork_core::recording::Form::Csv),
             GraphAction::RecordCompact => self.record(brushwork_core::recording::Form::Compact),
-            GraphAction::StopRecording => self.end_recording(""),
+            GraphAction::StopRecording => self.end_recording(Stopping::Asked),
             GraphAction::ExportCsv => self.export(super::files::Export::Csv),
             GraphAction::ExportPng => self.export(super::files::Export::Png),
             GraphAction::ExportSvg => self.export(super::files::Export::Svg),

@@ -2,7 +2,8 @@
 //!
 //! Whatever takes time does so on a thread of its own; what becomes of it is said by `LiveGraph::poll_files`.
 
-use crate::messages::WindowStatusMessage;
+use crate::messages::{GraphMessage, WindowStatusMessage};
+use brushwork_link::Message;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -44,7 +45,7 @@ pub enum OpenAs {
 }
 
 /// Something to say.
-type Said = (Gravity, String);
+type Said = (Gravity, Message);
 
 /// The graph's files.
 #[derive(Debug)]
@@ -78,7 +79,17 @@ struct Recording {
     recorder: Recorder,
     /// The link's time at the recording's beginning.
     base: Duration,
-    stopping: Option<&'static str>,
+    /// It is being closed, because the link has ended or because that was asked for.
+    stopping: Option<Stopping>,
+}
+
+/// Why a recording ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Stopping {
+    Asked,
+    LinkEnded,
+    /// The controller has other channels now.
+    OtherChannels,
 }
 
 #[derive(Debug)]
@@ -87,7 +98,7 @@ struct Loading {
     open_as: OpenAs,
     rows: Arc<AtomicU64>,
     given_up: Arc<AtomicBool>,
-    answer: Receiver<Result<load::Loaded, String>>,
+    answer: Receiver<Result<load::Loaded, Message>>,
 }
 
 impl Default for GraphFiles {
@@ -201,10 +212,10 @@ impl GraphFiles {
 }
 
 impl GraphFiles {
-    fn say(&mut self, gravity: Gravity, text: String) {
+    fn say(&mut self, gravity: Gravity, text: impl Into<Message>) {
         let (sender, receiver) = bounded(1);
         // The channel has room for one.
-        let _ = sender.send((gravity, text));
+        let _ = sender.send((gravity, text.into()));
         self.working.push(receiver);
     }
 
@@ -216,10 +227,8 @@ impl GraphFiles {
             let written =
                 make().and_then(|bytes| write_new(&path, &bytes).map_err(|error| error.to_string()));
             let said = match written {
-                Ok(()) => (Gravity::Note, format!("Wrote {shown}.")),
-                Err(error) => {
-                    (Gravity::Error, format!("Could not write {shown}: {error}. Choose another folder."))
-                }
+                Ok(()) => (Gravity::Note, GraphMessage::Wrote { path: shown }.into()),
+                Err(error) => (Gravity::Error, GraphMessage::NotWritten { path: shown, error }.into()),
             };
             // The window may be gone.
             let _ = sender.send(said);
@@ -227,10 +236,9 @@ impl GraphFiles {
         // Without a thread the channel is closed and nothing was written.
         match std::thread::Builder::new().name("export".to_owned()).spawn(work) {
             Ok(_) => self.working.push(receiver),
-            Err(error) => self.say(
-                Gravity::Error,
-                WindowStatusMessage::NotExported { error: error.to_string() }.to_string(),
-            ),
+            Err(error) => {
+                self.say(Gravity::Error, WindowStatusMessage::NotExported { error: error.to_string() });
+            }
         }
     }
 }

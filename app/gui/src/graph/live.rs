@@ -1,13 +1,14 @@
 //! The graph of one link: what its samples look like, earlier runs beneath them, and a recording that is looked at
 //! instead, while sampling goes on.
 
-use super::files::GraphFiles;
+use super::files::{GraphFiles, Stopping};
 use super::history::DEFAULT_ROWS;
 use super::rate::Rate;
 use super::runs::{Align, Run};
 use super::series::GAP;
 use super::track::ChannelInfo;
 use super::{Mark, MarkKind, Sheet, Track, TriggerMode, TriggerSource};
+use brushwork_link::Message;
 
 /// A channel that was read in each of this many samples and then in as many not has lost data.
 const MISSED_SAMPLES: u64 = 20;
@@ -44,7 +45,7 @@ pub struct Opened {
     /// When it was made, if the file tells.
     pub began: Option<std::time::SystemTime>,
     /// What the reader should know of it: rows left out, damage.
-    pub note: Option<String>,
+    pub note: Option<Message>,
     /// So many of its oldest rows did not fit in memory.
     pub left_out: u64,
 }
@@ -76,7 +77,7 @@ impl LiveGraph {
 
     /// Turns to the channels of another family's controller.
     pub fn set_channels(&mut self, channels: Vec<ChannelInfo>) {
-        self.end_recording("The recording ended: the controller has other channels. ");
+        self.end_recording(Stopping::OtherChannels);
         self.silent = vec![Silence::default(); channels.len()];
         self.live.set_channels(channels);
     }

@@ -1,5 +1,7 @@
 //! From a recording's file to a track, and from a track to CSV.
 
+use brushwork_link::Message;
+use brushwork_values::Sentences;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::SystemTime;
@@ -9,6 +11,7 @@ use super::scale::Scale;
 use super::series::NOT_READ;
 use super::track::{ChannelInfo, Track};
 use crate::family::all_channels;
+use crate::messages::GraphMessage;
 use crate::model::channels::graph_channels;
 use brushwork_core::recording::csv::{CsvWriter, Times};
 use brushwork_core::recording::{Column, Head, Reading, Record, open};
@@ -22,7 +25,7 @@ pub struct Loaded {
     pub track: Track,
     pub began: Option<SystemTime>,
     /// What was damaged or left out.
-    pub note: Option<String>,
+    pub note: Option<Message>,
     /// So many of its oldest rows are not in the track.
     pub left_out: u64,
 }
@@ -31,7 +34,7 @@ pub struct Loaded {
 ///
 /// # Errors
 /// The file cannot be read; the text is a sentence.
-pub fn load(path: &Path, rows: &AtomicU64, given_up: &AtomicBool) -> Result<Loaded, String> {
+pub fn load(path: &Path, rows: &AtomicU64, given_up: &AtomicBool) -> Result<Loaded, Message> {
     load_newest(path, rows, given_up, MOST_ROWS)
 }
 
@@ -40,7 +43,7 @@ fn load_newest(
     rows: &AtomicU64,
     given_up: &AtomicBool,
     most_rows: u64,
-) -> Result<Loaded, String> {
+) -> Result<Loaded, Message> {
     let mut head: Option<Head> = None;
     let mut builder: Option<Builder> = None;
     let begun = std::cell::RefCell::new((&mut head, &mut builder));
@@ -59,21 +62,16 @@ fn load_newest(
             !given_up.load(Ordering::Relaxed)
         },
     )
-    .map_err(|error| error.to_string())?;
-    let nothing = || {
-        format!(
-            "Could not open the recording {}: there is no sample in it. Choose another file.",
-            path.display()
-        )
-    };
+    .map_err(Message::error)?;
+    let shown = path.display().to_string();
+    let nothing = || Message::from(GraphMessage::NoSample { path: shown.clone() });
     let builder = builder.filter(|builder| !builder.track.history.is_empty()).ok_or_else(nothing)?;
     let began = head.map(|head| head.began).filter(|began| *began > SystemTime::UNIX_EPOCH);
     let left_out =
         builder.pushed.saturating_sub(builder.track.history.rows().end - builder.track.history.rows().start);
-    let cut =
-        format!("{}: the oldest {left_out} rows are left out; the rest fits in memory.", path.display());
-    let notes: Vec<String> = note.into_iter().chain((left_out > 0).then_some(cut)).collect();
-    let note = (!notes.is_empty()).then(|| notes.join(" "));
+    let cut = || GraphMessage::LeftOut { path: shown.clone(), rows: left_out }.into();
+    let notes: Vec<Message> = note.into_iter().chain((left_out > 0).then(cut)).collect();
+    let note = (!notes.is_empty()).then(|| GraphMessage::Notes { notes: Sentences(notes) }.into());
     Ok(Loaded { track: builder.track, began, note, left_out })
 }
 
@@ -195,6 +193,6 @@ mod tests {
         assert_eq!((whole.left_out, whole.note, whole.track.history.rows().end), (0, None, 9000));
         let cut = load(4096);
         assert_eq!((cut.left_out, cut.track.history.rows().end), (9000 - 4096, 9000));
-        assert!(cut.note.is_some_and(|note| note.contains("the oldest 4904 rows are left out")));
+        assert!(cut.note.is_some_and(|note| note.to_string().contains("the oldest 4904 rows are left out")));
     }
 }

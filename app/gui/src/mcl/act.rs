@@ -1,6 +1,7 @@
 //! What the actions of a person do to the open programs.
 
-use crate::messages::WindowStatusMessage;
+use crate::messages::{EditorMessage, WindowStatusMessage};
+use brushwork_link::Message;
 use egui::{Context, ViewportCommand};
 
 use super::examples::EXAMPLES;
@@ -134,7 +135,7 @@ impl Editor {
     }
 
     /// Does something that may not be possible; why not is told.
-    fn tell(&mut self, act: impl FnOnce(&mut Document) -> Result<(), String>) {
+    fn tell(&mut self, act: impl FnOnce(&mut Document) -> Result<(), EditorMessage>) {
         if let Err(why) = act(self.front_mut()) {
             self.say(Gravity::Warning, why);
         }
@@ -168,17 +169,18 @@ impl Editor {
         let title = document.title();
         document.known();
         let (errors, warnings) = document.findings.counts();
-        let many = |count: usize, what: &str| match count {
-            1 => format!("1 {what}"),
-            _ => format!("{count} {what}s"),
+        let warned: Message = match warnings {
+            1 => EditorMessage::OneWarning.into(),
+            count => EditorMessage::Warnings { count }.into(),
+        };
+        let found: Message = match errors {
+            1 => EditorMessage::OneError.into(),
+            count => EditorMessage::Errors { count }.into(),
         };
         let (gravity, text) = match (errors, warnings) {
-            (0, 0) => (Gravity::Note, format!("{title} is free of errors.")),
-            (0, _) => (Gravity::Warning, format!("{title} has no errors and {}.", many(warnings, "warning"))),
-            _ => (
-                Gravity::Error,
-                format!("{title} has {} and {}.", many(errors, "error"), many(warnings, "warning")),
-            ),
+            (0, 0) => (Gravity::Note, EditorMessage::Free { title }),
+            (0, _) => (Gravity::Warning, EditorMessage::Warned { title, warned }),
+            _ => (Gravity::Error, EditorMessage::Found { title, found, warned }),
         };
         if errors > 0 {
             document.go_to_first_error();

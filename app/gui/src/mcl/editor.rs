@@ -1,5 +1,6 @@
 //! The open programs, and how all of them are shown.
 
+use brushwork_link::Message;
 use std::path::PathBuf;
 
 use super::find::Find;
@@ -72,7 +73,7 @@ pub struct Editor {
     pub(super) closing: Vec<DocId>,
     pub(super) exit: Exit,
     pub(super) services: Option<Services>,
-    pub(super) said: Vec<(Gravity, String)>,
+    pub(super) said: Vec<(Gravity, Message)>,
 }
 
 impl Default for Editor {

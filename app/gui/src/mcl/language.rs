@@ -1,5 +1,6 @@
 //! What the compiler knows, for the place of the caret or the pointer: meanings, definitions, other names, words that belong together.
 
+use brushwork_link::Message;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -9,6 +10,7 @@ use brushwork_script::text::Span;
 use super::check::{Checked, check};
 use super::moves::word_at;
 use super::{Caret, Document, Kind};
+use crate::messages::EditorMessage;
 
 /// What is shown where the pointer rests.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -84,7 +86,7 @@ impl Document {
     ///
     /// # Errors
     /// A sentence, where there is no name or no definition.
-    pub fn go_to_definition(&mut self) -> Result<(), String> {
+    pub fn go_to_definition(&mut self) -> Result<(), EditorMessage> {
         let checked = self.known();
         let at = self.caret.head;
         let word = self.text.slice(self.word(at)).into_owned();
@@ -95,12 +97,10 @@ impl Document {
                 self.go_to(Caret::selecting(defined.start, defined.end));
                 Ok(())
             }
-            None if word.is_empty() => {
-                Err("There is no name at the caret. Put it on a variable, a constant or a label.".to_owned())
-            }
+            None if word.is_empty() => Err(EditorMessage::NoName),
             None => Err(match index::help(&word) {
-                Some(_) => format!("{word} is a word of MCL and not defined in the program."),
-                None => format!("{word} is not defined in this program."),
+                Some(_) => EditorMessage::OfTheLanguage { word },
+                None => EditorMessage::NotDefined { word },
             }),
         }
     }
@@ -109,14 +109,12 @@ impl Document {
     ///
     /// # Errors
     /// A sentence, where it cannot be.
-    pub fn rename(&mut self, new: &str) -> Result<usize, String> {
+    pub fn rename(&mut self, new: &str) -> Result<usize, EditorMessage> {
         let checked = self.known();
         let at = u32::try_from(self.caret.head).unwrap_or(u32::MAX);
-        let places = checked.index.rename(at, new).map_err(|error| {
-            let mut sentence = error.to_string();
-            sentence.replace_range(..1, &sentence[..1].to_uppercase());
-            format!("{sentence}.")
-        })?;
+        let not_renamed =
+            |error: index::RenameError| EditorMessage::NotRenamed { why: Message::error(error) };
+        let places = checked.index.rename(at, new).map_err(not_renamed)?;
         let line = self.caret_line();
         let edits = places.iter().rev().map(|span| (bytes(*span), new.to_owned()));
         let edits: Vec<_> = edits.collect();
@@ -137,7 +135,7 @@ impl Document {
     ///
     /// # Errors
     /// A sentence, where no such word stands.
-    pub fn go_to_match(&mut self) -> Result<(), String> {
+    pub fn go_to_match(&mut self) -> Result<(), EditorMessage> {
         let checked = self.known();
         let at = self.caret.head;
         let block = checked.index.block_at(u32::try_from(at).unwrap_or(u32::MAX));
@@ -149,7 +147,7 @@ impl Document {
                 self.go_to(Caret::at(bytes(*span).start));
                 Ok(())
             }
-            _ => Err("Put the caret on a word such as IF, ELSE, WHILE or NEXT first.".to_owned()),
+            _ => Err(EditorMessage::NoBlock),
         }
     }
 

@@ -1,6 +1,6 @@
 //! Pages to the system's printer, by its print command: `lp` or `lpr`. Where there is neither, pages go to a PDF file alone.
 
-use crate::messages::{WindowActMessage, WindowCauseMessage, WindowRemedyMessage};
+use crate::messages::{EditorMessage, WindowActMessage, WindowCauseMessage, WindowRemedyMessage};
 use brushwork_link::messages::RemedyMessage;
 use std::ffi::OsStr;
 use std::io::Write as _;
@@ -99,8 +99,8 @@ pub struct Job {
 /// Prints on threads of their own, since a printer may let one wait.
 #[derive(Debug)]
 pub struct Printing {
-    sender: Sender<Result<String, Failure>>,
-    news: Receiver<Result<String, Failure>>,
+    sender: Sender<Result<EditorMessage, Failure>>,
+    news: Receiver<Result<EditorMessage, Failure>>,
 }
 
 impl Default for Printing {
@@ -121,7 +121,7 @@ impl Printing {
             RemedyMessage::TryAgain,
         );
         let work = move || {
-            let done = spooler.print(&job).map(|()| format!("{} is with the printer.", job.title));
+            let done = spooler.print(&job).map(|()| EditorMessage::Printed { title: job.title.clone() });
             // A window that is gone wants no answer.
             let _ = sender.try_send(done);
             tell();
@@ -131,8 +131,8 @@ impl Printing {
         }
     }
 
-    /// What became of a job, as a sentence.
-    pub fn news(&self) -> Option<Result<String, Failure>> {
+    /// What became of a job.
+    pub fn news(&self) -> Option<Result<EditorMessage, Failure>> {
         self.news.try_recv().ok()
     }
 }
@@ -150,7 +150,7 @@ mod tests {
         fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).expect("a file of ours");
     }
 
-    fn reported(spooler: Spooler, printer: &str) -> Result<String, Failure> {
+    fn reported(spooler: Spooler, printer: &str) -> Result<EditorMessage, Failure> {
         let printing = Printing::default();
         let job =
             Job { title: "a.mcl".to_owned(), printer: printer.to_owned(), pages: b"%PDF-1.7 x".to_vec() };
@@ -169,7 +169,7 @@ mod tests {
         install(folder.path(), "lpr", "exit 1");
         install(folder.path(), "lp", &format!("echo \"$@\" >{0}; cat >>{0}", seen.display()));
         let spooler = Spooler::find_in(folder.path().as_os_str()).unwrap();
-        assert_eq!(reported(spooler, "laser").unwrap(), "a.mcl is with the printer.");
+        assert_eq!(reported(spooler, "laser").unwrap().to_string(), "a.mcl is with the printer.");
         assert_eq!(fs::read_to_string(seen).unwrap(), "-t a.mcl -d laser\n%PDF-1.7 x");
     }
 

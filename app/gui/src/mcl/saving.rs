@@ -1,6 +1,7 @@
 //! Opening, saving and closing, as far as questions have to be asked and answered.
 
-use crate::messages::WindowStatusMessage;
+use crate::messages::{EditorMessage, WindowStatusMessage};
+use brushwork_link::Message;
 use std::path::PathBuf;
 
 use egui::Context;
@@ -65,10 +66,8 @@ impl Editor {
         let bytes = match encode(&document.text.text(), document.format) {
             Ok(bytes) => bytes,
             Err(error) => {
-                let text = format!(
-                    "Could not save {}: {error}. Choose UTF-8 below the text and save again.",
-                    document.title()
-                );
+                let text =
+                    EditorMessage::NotEncoded { title: document.title(), error: Message::error(error) };
                 self.closing.clear();
                 return self.say(Gravity::Error, text);
             }
@@ -86,8 +85,7 @@ impl Editor {
         match print::pdf(&document.title(), &document.text.text()) {
             Ok(bytes) => self.ask(Task::Export { path, bytes, what: "Printed to" }),
             Err(why) => {
-                let text = format!("Could not print {}: {why}.", document.title());
-                self.say(Gravity::Error, text);
+                self.say(Gravity::Error, WindowStatusMessage::NotPrinted { title: document.title(), why });
             }
         }
     }
@@ -117,8 +115,8 @@ impl Editor {
     pub(super) fn hear_of_printing(&mut self) {
         while let Some(news) = self.printing.news() {
             match news {
-                Ok(text) => self.say(Gravity::Note, text),
-                Err(failure) => self.say(Gravity::Error, failure.to_string()),
+                Ok(said) => self.say(Gravity::Note, said),
+                Err(failure) => self.say(Gravity::Error, failure.message()),
             }
         }
     }

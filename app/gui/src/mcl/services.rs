@@ -1,10 +1,10 @@
 //! What runs beside the editor: the thread that checks, the thread of files, the journal; and what their news do to the programs.
 
-use crate::messages::WindowStatusMessage;
+use crate::messages::{EditorMessage, WindowStatusMessage};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use brushwork_link::Failure;
+use brushwork_link::{Failure, Message};
 use egui::Context;
 
 use super::check::Checker;
@@ -43,18 +43,18 @@ impl Editor {
     pub(super) fn ask(&mut self, task: Task) {
         let Some(services) = &self.services else { return };
         if let Err(failure) = services.files.ask(task) {
-            self.say(Gravity::Error, failure.to_string());
+            self.say(Gravity::Error, failure.message());
         }
     }
 
     /// Something for the message line.
-    pub(super) fn say(&mut self, gravity: Gravity, text: impl std::fmt::Display) {
-        self.said.push((gravity, text.to_string()));
+    pub(super) fn say(&mut self, gravity: Gravity, text: impl Into<Message>) {
+        self.said.push((gravity, text.into()));
     }
 
     /// Takes in what the threads found and asks for what comes next. `shown` is whether the screen is in view. Hands back what
     /// is to be told.
-    pub fn update(&mut self, ctx: &Context, now_s: f64, shown: bool) -> Vec<(Gravity, String)> {
+    pub fn update(&mut self, ctx: &Context, now_s: f64, shown: bool) -> Vec<(Gravity, Message)> {
         self.check(shown);
         while let Some(done) = self.services.as_ref().and_then(|services| services.files.news()) {
             self.take(done);
@@ -86,7 +86,7 @@ impl Editor {
         match done {
             Done::Opened(path, Ok(loaded)) => self.opened(path, &loaded),
             Done::Opened(_, Err(failure)) | Done::NotKept(failure) => {
-                self.say(Gravity::Error, failure.to_string());
+                self.say(Gravity::Error, failure.message());
             }
             Done::Reloaded(id, result) => self.reloaded(id, result),
             Done::Saved { id, path, revision, result } => self.saved(id, path, revision, result),
@@ -96,7 +96,7 @@ impl Editor {
                     WindowStatusMessage::FileIs { what, path: path.display().to_string() },
                 );
             }
-            Done::Exported(_, _, Err(failure)) => self.say(Gravity::Error, failure.to_string()),
+            Done::Exported(_, _, Err(failure)) => self.say(Gravity::Error, failure.message()),
             Done::Changed(changed) => self.changed_on_disk(changed),
             Done::Left(left) => self.left = left,
         }
@@ -128,13 +128,10 @@ impl Editor {
                 document.stamp = loaded.stamp;
                 document.on_disk = OnDisk::Same;
                 document.text.set_saved();
-                let text = format!(
-                    "{} was changed by another program and was loaded again. Undo brings the old text back.",
-                    document.title()
-                );
+                let text = EditorMessage::LoadedAgain { title: document.title() };
                 self.say(Gravity::Note, text);
             }
-            Err(failure) => self.say(Gravity::Error, failure.to_string()),
+            Err(failure) => self.say(Gravity::Error, failure.message()),
         }
     }
 
@@ -160,16 +157,13 @@ impl Editor {
             }
             Err(SaveError::Changed) => {
                 document.on_disk = OnDisk::Changed;
-                let text = format!(
-                    "{} was changed by another program and was not saved. Choose above the text which one counts.",
-                    document.title()
-                );
+                let text = EditorMessage::ChangedElsewhere { title: document.title() };
                 self.closing.clear();
                 self.say(Gravity::Warning, text);
             }
             Err(SaveError::Failed(failure)) => {
                 self.closing.clear();
-                self.say(Gravity::Error, failure.to_string());
+                self.say(Gravity::Error, failure.message());
             }
         }
     }

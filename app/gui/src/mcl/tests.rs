@@ -245,7 +245,7 @@ fn names_are_changed_in_all_their_places_and_the_caret_stays_with_its_word() {
     assert_eq!(program.rename("v"), Ok(3));
     assert_eq!(program.text.text(), "v VAR Long\nv = 1\nputs 0,[dec v]\nend\n");
     assert_eq!(program.caret_line(), 1);
-    assert!(program.rename("goto").unwrap_err().ends_with('.'));
+    assert!(program.rename("goto").unwrap_err().to_string().ends_with('.'));
     program.undo();
     assert_eq!(program.text.text(), text);
 }
@@ -262,7 +262,7 @@ fn the_way_leads_to_definitions_and_matching_words() {
     assert_eq!(program.caret.head, text.find("endif").unwrap());
     program.go_to_match().unwrap();
     assert_eq!(program.caret.head, text.find("if").unwrap());
-    assert!(program.go_to_definition().unwrap_err().contains("word of MCL"));
+    assert!(program.go_to_definition().unwrap_err().to_string().contains("word of MCL"));
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Firmware updates of an MCP: what the firmware window asks for, and how an update goes on.
 
 use brushwork_core::keep::UnitId;
+use brushwork_link::Message;
 use brushwork_link::device::{Request, RiskAccepted};
 use brushwork_link::transport::ConnectTarget;
 use egui::Context;
@@ -8,10 +9,11 @@ use egui::Context;
 use super::model::firmware::{FirmwareAction, Next};
 use crate::family_action::{FamilyAction, Host};
 use crate::frame::FRAME_INTERVAL;
+use crate::messages::FirmwareMessage;
 use crate::model::{Arming, ConnectionId, Phase};
 
 impl FamilyAction for FirmwareAction {
-    fn act(&self, host: &mut dyn Host) -> Result<(), String> {
+    fn act(&self, host: &mut dyn Host) -> Result<(), Message> {
         let firmware = &mut host.model().front.mcp_mut().firmware;
         match *self {
             Self::Browse => firmware.browse(),
@@ -50,7 +52,7 @@ pub fn look_after_firmware(host: &mut dyn Host, id: ConnectionId, ctx: &Context)
     }
 }
 
-fn begin_update(host: &mut dyn Host) -> Result<(), String> {
+fn begin_update(host: &mut dyn Host) -> Result<(), Message> {
     let model = host.model();
     let firmware = &model.front.mcp().firmware;
     if !firmware.accepted || firmware.stage.is_running() {
@@ -61,7 +63,7 @@ fn begin_update(host: &mut dyn Host) -> Result<(), String> {
             Some(target) => target.parse(),
             None => model.devices.target(),
         };
-        let target = target.map_err(|error| error.to_string())?;
+        let target = target.map_err(Message::error)?;
         let place = host.loader_place(&target);
         let simulated = matches!(target, ConnectTarget::Sim(_));
         let store = host.store();
@@ -71,13 +73,13 @@ fn begin_update(host: &mut dyn Host) -> Result<(), String> {
     let store = host.store();
     let model = host.model();
     let front = &mut model.front;
-    let identity = front.link.identity().cloned().ok_or("Connect the controller first.")?;
+    let identity = front.link.identity().cloned().ok_or(FirmwareMessage::ConnectFirst)?;
     let unit = UnitId::new(&identity, &model.devices.ports);
     let (id, stream) = (front.id(), front.link.stream);
     let place = front.target.clone().unwrap_or_default();
     let job = front.mcp_mut().firmware.begin(&identity, stream, unit, place, store)?;
     if !host.request_of(id, Request::Job(job)) {
-        host.model().front.mcp_mut().firmware.not_entered("the controller is busy.");
+        host.model().front.mcp_mut().firmware.not_entered(FirmwareMessage::Busy);
     }
     Ok(())
 }
@@ -91,13 +93,13 @@ fn enter_loader(host: &mut dyn Host, id: ConnectionId) {
         let firmware = &mut connection.mcp_mut().firmware;
         match place {
             Some(place) => firmware.entering(place),
-            None => firmware.not_entered("the link was lost."),
+            None => firmware.not_entered(FirmwareMessage::LinkLost),
         }
     }
     if is_known
         && !host.request_of(id, Request::EnterLoader(RiskAccepted::by_the_user()))
         && let Some(connection) = host.model().connection_mut(id)
     {
-        connection.mcp_mut().firmware.not_entered("the controller is busy.");
+        connection.mcp_mut().firmware.not_entered(FirmwareMessage::Busy);
     }
 }

@@ -2,6 +2,7 @@
 
 use brushwork_canopen::NodeId;
 use brushwork_canopen::adapter::Form;
+use brushwork_link::Message;
 use brushwork_link::transport::PortInfo;
 use brushwork_link::transport::target::DEFAULT_ADAPTER_BAUD;
 use crossbeam_channel::Receiver;
@@ -23,7 +24,7 @@ pub struct CanOpenChoice {
     /// One node, or all that answer.
     pub node: Option<u8>,
     /// What comes of a node that is being started.
-    pub starting: Option<Receiver<Result<String, String>>>,
+    pub starting: Option<Receiver<Result<Message, Message>>>,
 }
 
 impl Default for CanOpenChoice {

@@ -31,6 +31,7 @@ use super::{
 use crate::debugger::Debugging;
 use crate::family::{self, Family, Own, Sliders};
 use crate::graph::LiveGraph;
+use crate::messages::JobMessage;
 use crate::tune::Tuning;
 
 /// Which connection, for as long as the window is open.
@@ -379,11 +380,8 @@ impl Connection {
                 ended.map(|ended| self.general_view().take(ended)).unwrap_or_default()
             }
             Owner::ClampTest => self.general.clamp.take(event),
-            Owner::Generator => said(
-                self.generator.take(event),
-                "The profile was played to its end. The motors were stopped.",
-            ),
-            Owner::Qpps => said(self.qpps.take(event), "QPPS was measured. The motors were stopped."),
+            Owner::Generator => said(self.generator.take(event), JobMessage::Played),
+            Owner::Qpps => said(self.qpps.take(event), JobMessage::QppsMeasured),
             Owner::Script => {
                 if matches!(event, Event::JobEnded(_)) {
                     // It may have set autorun.

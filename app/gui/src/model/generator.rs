@@ -1,5 +1,6 @@
 //! The profile generator of the screens that drive: what is set, what runs, and the figures of its last steps.
 
+use brushwork_core::messages::ProfilePlanMessage;
 use brushwork_link::device::{ArmScope, Event, QueuedJob};
 use brushwork_values::Motor;
 
@@ -58,17 +59,20 @@ impl Generator {
     }
 
     /// The legs of what is set, or why there are none: a sentence.
-    pub fn plan(&self, mode: Mode, pace: Pace, reaches: [Option<Reach>; 2]) -> Result<Vec<Leg>, String> {
+    pub fn plan(
+        &self,
+        mode: Mode,
+        pace: Pace,
+        reaches: [Option<Reach>; 2],
+    ) -> Result<Vec<Leg>, ProfilePlanMessage> {
         let motors = self.chosen_motors();
         if motors.is_empty() {
-            return Err("No motor is chosen. Tick at least one.".to_owned());
+            return Err(ProfilePlanMessage::NoMotor);
         }
         let mut common: Option<Reach> = None;
         for motor in motors {
             let Some(reach) = reaches[motor.index()] else {
-                return Err(format!(
-                    "{motor} has no range of setpoints yet. Set and apply its settings first."
-                ));
+                return Err(ProfilePlanMessage::NoReach { motor });
             };
             common = Some(match common {
                 None => reach,
@@ -79,7 +83,7 @@ impl Generator {
                 },
             });
         }
-        let reach = common.ok_or("No motor is chosen.")?;
+        let reach = common.ok_or(ProfilePlanMessage::NoMotor)?;
         legs(mode, self.profile(mode), pace, reach)
     }
 
@@ -89,11 +93,11 @@ impl Generator {
         mode: Mode,
         pace: Pace,
         reaches: [Option<Reach>; 2],
-    ) -> Result<QueuedJob, String> {
+    ) -> Result<QueuedJob, ProfilePlanMessage> {
         let legs = self.plan(mode, pace, reaches)?;
         let motors = self.chosen_motors();
         let job = self.job.begin(player::job(player::Task { mode, motors, legs }));
-        let job = job.ok_or("A profile is playing already.")?;
+        let job = job.ok_or(ProfilePlanMessage::Plays)?;
         (self.mode, self.played) = (mode, None);
         Ok(job)
     }
@@ -143,11 +147,14 @@ mod tests {
         let mut generator = Generator::default();
         assert!(generator.plan(Mode::Speed, PACE, [reach(9000.0), reach(4000.0)]).is_ok());
         generator.motors = [true, true];
-        let refused = generator.plan(Mode::Speed, PACE, [reach(9000.0), reach(4000.0)]).unwrap_err();
+        let refused =
+            generator.plan(Mode::Speed, PACE, [reach(9000.0), reach(4000.0)]).unwrap_err().to_string();
         assert!(refused.contains("-4000 to 4000"), "{refused}");
-        let refused = generator.plan(Mode::Speed, PACE, [reach(9000.0), None]).unwrap_err();
+        let refused = generator.plan(Mode::Speed, PACE, [reach(9000.0), None]).unwrap_err().to_string();
         assert!(refused.starts_with("M2 has no range"), "{refused}");
         generator.motors = [false, false];
-        assert!(generator.plan(Mode::Speed, PACE, [None, None]).unwrap_err().contains("No motor"));
+        assert!(
+            generator.plan(Mode::Speed, PACE, [None, None]).unwrap_err().to_string().contains("No motor")
+        );
     }
 }

@@ -1,5 +1,6 @@
 //! What the screens that drive ask of a connection beyond its sliders: a profile to be played, QPPS to be measured.
 
+use brushwork_core::messages::ProfilePlanMessage;
 use brushwork_link::device::{Channel, QueuedJob};
 use brushwork_values::Motor;
 
@@ -25,7 +26,7 @@ impl Connection {
     }
 
     /// The legs of the profile that is set, or why there are none.
-    pub fn plan(&self, mode: Mode) -> Result<Vec<Leg>, String> {
+    pub fn plan(&self, mode: Mode) -> Result<Vec<Leg>, ProfilePlanMessage> {
         self.generator.plan(mode, self.pace(mode), self.reaches(mode))
     }
 
@@ -34,8 +35,8 @@ impl Connection {
         &mut self,
         action: GuidedAction,
         screen: Screen,
-    ) -> Result<Option<(Owner, QueuedJob)>, String> {
-        let nothing = || "A job runs already. Wait for it or cancel it.".to_owned();
+    ) -> Result<Option<(Owner, QueuedJob)>, ProfilePlanMessage> {
+        let nothing = || ProfilePlanMessage::JobRuns;
         match action {
             GuidedAction::Cancel => {
                 self.generator.job.cancel();

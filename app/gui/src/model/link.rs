@@ -3,7 +3,7 @@
 //! Everything here follows from the device thread's events. What an event means for the rest of the window (a
 //! sentence to say, a slider to put back to zero) is handed back as [`Effect`]s.
 
-use crate::messages::WindowStatusMessage;
+use crate::messages::{LinkStatusMessage, WindowStatusMessage};
 use brushwork_core::messages::CoreStatusMessage;
 use brushwork_link::capability::CapabilityMap;
 use brushwork_link::device::{DisarmReason, StopReport};
@@ -44,7 +44,7 @@ impl Arming {
 /// What an event means beyond this module.
 #[derive(Debug)]
 pub enum Effect {
-    Say(Gravity, String),
+    Say(Gravity, Message),
     /// Sliders go to zero: nothing may move any more.
     AtRest,
     /// A new sample of the selected unit.
@@ -53,6 +53,13 @@ pub enum Effect {
     OtherUnit,
     /// The link has ended.
     Ended,
+}
+
+impl Effect {
+    /// Something for the message line.
+    pub fn say(gravity: Gravity, text: impl Into<Message>) -> Self {
+        Self::Say(gravity, text.into())
+    }
 }
 
 /// What is known of an open link.
@@ -81,7 +88,7 @@ pub struct LinkView {
     /// What else can drive a motor while something is armed: input pins and scripts, each as a sentence.
     pub warnings: Vec<Message>,
     /// What is known of this place, should nobody answer: an update that did not end.
-    pub waiting: Option<String>,
+    pub waiting: Option<Message>,
     /// The address that the selected unit is about to leave for another.
     moved_from: Option<u8>,
     /// The commands that each unit is known to lack, by its address.
@@ -129,7 +136,7 @@ impl LinkView {
         let mut effects = self.heard(event);
         effects.extend(finding.map(|finding| {
             let gravity = if finding.is_fault() { Gravity::Error } else { Gravity::Warning };
-            Effect::Say(gravity, finding.sentence)
+            Effect::say(gravity, finding.sentence)
         }));
         effects
     }
@@ -162,10 +169,7 @@ impl LinkView {
                 self.refusals.clear();
                 vec![
                     Effect::AtRest,
-                    Effect::Say(
-                        Gravity::Warning,
-                        WindowStatusMessage::Armed { scope: scope.to_string() }.to_string(),
-                    ),
+                    Effect::say(Gravity::Warning, WindowStatusMessage::Armed { scope: scope.to_string() }),
                 ]
             }
             Event::Disarmed(reason) => self.disarmed(&reason),
@@ -176,11 +180,11 @@ impl LinkView {
                 Vec::new()
             }
             Event::Capabilities { address, map } => self.lacks(address, &map),
-            Event::Failure(failure) => vec![Effect::Say(Gravity::Error, failure.to_string())],
+            Event::Failure(failure) => vec![Effect::say(Gravity::Error, failure.message())],
             Event::Lost(failure) => self.lost(&failure),
             Event::LoaderEntered => Vec::new(),
             Event::Closed => {
-                vec![Effect::Say(Gravity::Note, WindowStatusMessage::Disconnected.to_string()), Effect::Ended]
+                vec![Effect::say(Gravity::Note, WindowStatusMessage::Disconnected), Effect::Ended]
             }
             Event::Driven { .. }
             | Event::RawReply { .. }
@@ -193,19 +197,20 @@ impl LinkView {
     }
 
     fn connected(&mut self, identity: Identity) -> Vec<Effect> {
-        let mut said =
-            format!("Connected to {} at {}, {}", identity.title(), identity.port, identity.named_place());
-        said += &match identity.firmware.as_str() {
+        let (unit, port, place) =
+            (identity.title().to_owned(), identity.port.clone(), identity.named_place());
+        let (generation, firmware) = (identity.generation.to_string(), identity.firmware.clone());
+        let said = match firmware.as_str() {
             _ if family::of(identity.family).generation_number(&identity).is_none() => {
-                format!(", {}.", identity.generation)
+                LinkStatusMessage::ConnectedOf { unit, port, place, generation }
             }
-            "" => format!(" ({}).", identity.generation),
-            firmware => format!(", firmware {firmware} ({}).", identity.generation),
+            "" => LinkStatusMessage::ConnectedBare { unit, port, place, generation },
+            _ => LinkStatusMessage::Connected { unit, port, place, firmware, generation },
         };
-        let mut effects = vec![Effect::Say(Gravity::Note, said)];
+        let mut effects = vec![Effect::say(Gravity::Note, said)];
         // A node's notes are its CANopen identity, which is nothing odd.
         let gravity = if identity.is_node() { Gravity::Note } else { Gravity::Warning };
-        let notes = identity.notes.iter().map(|note| Effect::Say(gravity, note.to_string()));
+        let notes = identity.notes.iter().map(|note| Effect::say(gravity, note.clone()));
         effects.extend(notes);
         self.units.retain(|unit| unit.address != identity.address);
         self.units.push(identity);
@@ -265,8 +270,8 @@ impl LinkView {
         let Some(unit) = self.units.iter().find(|unit| unit.address == address && !new.is_empty()) else {
             return Vec::new();
         };
-        let sentence = format!("The firmware of {} does not have: {}.", unit.place(), titles(unit, &new));
-        vec![Effect::Say(Gravity::Note, sentence)]
+        let sentence = LinkStatusMessage::Lacks { unit: unit.place(), commands: titles(unit, &new) };
+        vec![Effect::say(Gravity::Note, sentence)]
     }
 
     #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
@@ -284,39 +289,34 @@ impl LinkView {
             DisarmReason::DeadMan => Gravity::Warning,
             _ => Gravity::Note,
         };
-        vec![
-            Effect::AtRest,
-            Effect::Say(gravity, CoreStatusMessage::Stopping { reason: reason.clone() }.to_string()),
-        ]
+        vec![Effect::AtRest, Effect::say(gravity, CoreStatusMessage::Stopping { reason: reason.clone() })]
     }
 
     fn refused(&mut self, reasons: Vec<Failure>) -> Vec<Effect> {
         self.arming = Arming::Disarmed;
-        let first = reasons.first().map(ToString::to_string).unwrap_or_default();
+        let first = reasons.first().map(Failure::message).unwrap_or_default();
         self.refusals = reasons;
-        vec![Effect::AtRest, Effect::Say(Gravity::Error, first)]
+        vec![Effect::AtRest, Effect::say(Gravity::Error, first)]
     }
 
     fn lost(&mut self, failure: &Failure) -> Vec<Effect> {
-        let mut text = failure.to_string();
+        let mut text = failure.message();
         if let Arming::Armed { controller_timeout, .. } = self.arming {
             self.lost_while_armed = Some(controller_timeout);
         }
         match self.lost_while_armed {
             Some(Some(timeout)) => {
-                text += &format!(
-                    " The screen was armed: the controller stops its motors by itself after {:.1} s of silence.",
-                    timeout.as_secs_f64()
-                );
+                let seconds = timeout.as_secs_f64();
+                text = LinkStatusMessage::LostArmed { what: text, seconds }.into();
             }
-            Some(None) => text += " The screen was armed: make sure that the motors stand still.",
+            Some(None) => text = LinkStatusMessage::LostArmedForever { what: text }.into(),
             None => {}
         }
         if let Some(waiting) = self.waiting.as_ref().filter(|_| self.units.is_empty()) {
-            text = format!("{text} {waiting}");
+            text = LinkStatusMessage::LostWaiting { what: text, waiting: waiting.clone() }.into();
         }
         self.arming = Arming::Disarmed;
-        vec![Effect::AtRest, Effect::Say(Gravity::Error, text), Effect::Ended]
+        vec![Effect::AtRest, Effect::say(Gravity::Error, text), Effect::Ended]
     }
 }
 
@@ -326,15 +326,16 @@ impl LinkView {
         let mut matters = matters(report, &self.units);
         if matters.is_empty() {
             let milliseconds = report.latency().as_secs_f64() * 1000.0;
-            let text =
-                format!("Stopped. The stop was on the wire after {milliseconds:.1} ms; duty 0 is confirmed.");
-            return vec![Effect::AtRest, Effect::Say(Gravity::Note, text)];
+            return vec![
+                Effect::AtRest,
+                Effect::say(Gravity::Note, LinkStatusMessage::Stopped { milliseconds }),
+            ];
         }
         // The message line shows what was said last: the gravest.
         matters.sort_by_key(|(matter, _)| Reverse(*matter));
         let said = matters.into_iter().map(|(matter, text)| match matter {
-            Matter::NotConfirmed | Matter::Failed => Effect::Say(Gravity::Error, text),
-            Matter::StillDriven => Effect::Say(Gravity::Warning, text),
+            Matter::NotConfirmed | Matter::Failed => Effect::say(Gravity::Error, text),
+            Matter::StillDriven => Effect::say(Gravity::Warning, text),
         });
         std::iter::once(Effect::AtRest).chain(said).collect()
     }

@@ -1,7 +1,5 @@
 //! The message line: what happened last, until it is dismissed or something else happens.
 
-use std::fmt::Display;
-
 /// How grave a message is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Gravity {
@@ -14,7 +12,7 @@ pub enum Gravity {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Message {
     pub gravity: Gravity,
-    pub text: String,
+    pub text: brushwork_link::Message,
 }
 
 /// The newest message and how many came before it.
@@ -29,8 +27,8 @@ pub struct Messages {
 const KEPT: usize = 200;
 
 impl Messages {
-    pub fn say(&mut self, gravity: Gravity, text: impl Display) {
-        let message = Message { gravity, text: text.to_string() };
+    pub fn say(&mut self, gravity: Gravity, text: impl Into<brushwork_link::Message>) {
+        let message = Message { gravity, text: text.into() };
         if self.past.len() == KEPT {
             self.past.remove(0);
         }
@@ -42,15 +40,15 @@ impl Messages {
         }
     }
 
-    pub fn note(&mut self, text: impl Display) {
+    pub fn note(&mut self, text: impl Into<brushwork_link::Message>) {
         self.say(Gravity::Note, text);
     }
 
-    pub fn warn(&mut self, text: impl Display) {
+    pub fn warn(&mut self, text: impl Into<brushwork_link::Message>) {
         self.say(Gravity::Warning, text);
     }
 
-    pub fn fail(&mut self, text: impl Display) {
+    pub fn fail(&mut self, text: impl Into<brushwork_link::Message>) {
         self.say(Gravity::Error, text);
     }
 
@@ -67,16 +65,17 @@ impl Messages {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::messages::WindowStatusMessage;
 
     #[test]
     fn a_note_does_not_wipe_away_an_unread_error() {
         let mut messages = Messages::default();
-        messages.fail("Could not open COM3.");
-        messages.note("Connected.");
+        messages.fail(WindowStatusMessage::LinkEnded);
+        messages.note(WindowStatusMessage::Disconnected);
         assert_eq!(messages.shown.as_ref().unwrap().gravity, Gravity::Error);
         messages.dismiss();
-        messages.note("Connected.");
-        assert_eq!(messages.shown.as_ref().unwrap().text, "Connected.");
+        messages.note(WindowStatusMessage::Disconnected);
+        assert_eq!(messages.shown.as_ref().unwrap().text, "Disconnected.");
         assert_eq!(messages.past().count(), 3);
     }
 
@@ -84,9 +83,9 @@ mod tests {
     fn messages_do_not_pile_up_without_end() {
         let mut messages = Messages::default();
         for number in 0..1000 {
-            messages.note(number.to_string());
+            messages.note(WindowStatusMessage::Copied { count: number });
         }
         assert_eq!(messages.past().count(), KEPT);
-        assert_eq!(messages.past().next().unwrap().text, "999");
+        assert_eq!(messages.past().next().unwrap().text, "Copied 999 transactions.");
     }
 }

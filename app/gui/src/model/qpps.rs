@@ -1,5 +1,6 @@
 //! The guided measurement of QPPS on the PWM screen: what is set, what runs, and what was found.
 
+use brushwork_link::Message;
 use std::time::Duration;
 
 use brushwork_link::device::{Event, QueuedJob};
@@ -20,7 +21,7 @@ pub struct QppsPanel {
     pub job: Watched<Measured>,
     pub measured: Option<Measured>,
     /// Why nothing was found the last time.
-    pub refusal: Option<String>,
+    pub refusal: Option<Message>,
 }
 
 impl Default for QppsPanel {

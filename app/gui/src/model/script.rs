@@ -4,6 +4,7 @@ use brushwork_link::device::{Event, Job, QueuedJob};
 
 use super::{Effect, Gravity, Watched};
 use crate::mcl::DocId;
+use crate::messages::JobMessage;
 
 /// Whose program is meant: its tab, and the text as it was compiled.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -43,11 +44,11 @@ impl ScriptWork {
         match ended {
             Ok(done) => {
                 let title = source.as_ref().map_or("the script", |source| source.title.as_str());
-                let text = format!("Downloaded {title}: {done}");
+                let text = JobMessage::Downloaded { title: title.to_owned(), how: done };
                 self.on_board = source;
-                vec![Effect::Say(Gravity::Note, text)]
+                vec![Effect::say(Gravity::Note, text)]
             }
-            Err(unfinished) => vec![Effect::Say(Gravity::Error, unfinished.sentence)],
+            Err(unfinished) => vec![Effect::say(Gravity::Error, unfinished.sentence)],
         }
     }
 }

@@ -4,6 +4,8 @@ use brushwork_link::Message;
 use brushwork_link::{Event, Interruption, Job, JobEnding, JobTicket, QueuedJob};
 
 use super::{Effect, Gravity};
+use crate::messages::JobMessage;
+use brushwork_core::messages::EndedMessage;
 
 /// One kind of job, at most one of which runs.
 #[derive(Debug)]
@@ -22,7 +24,7 @@ struct Running<T> {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unfinished {
     pub gravity: Gravity,
-    pub sentence: String,
+    pub sentence: Message,
 }
 
 impl<T> Default for Watched<T> {
@@ -93,38 +95,35 @@ impl<T> Watched<T> {
 
 fn unfinished<T>(name: &Message, ending: &JobEnding<T>) -> Unfinished {
     let (gravity, sentence) = match ending {
-        JobEnding::Done(_) => (Gravity::Note, String::new()),
-        JobEnding::Failed(failure) => (Gravity::Error, failure.to_string()),
+        JobEnding::Done(_) => (Gravity::Note, Message::default()),
+        JobEnding::Failed(failure) => (Gravity::Error, failure.message()),
         JobEnding::Panicked(word) => {
-            (Gravity::Error, format!("Could not {name}: Brushwork had a bug. Its last word: {word}"))
+            (Gravity::Error, JobMessage::Panicked { act: name.clone(), word: word.clone() }.into())
         }
-        JobEnding::Interrupted(cause) => (
-            Gravity::Warning,
-            format!("Did not {name} to the end: {}. The motors were stopped.", interruption(*cause)),
-        ),
+        JobEnding::Interrupted(cause) => {
+            (Gravity::Warning, JobMessage::CutShort { act: name.clone(), cause: interruption(*cause) }.into())
+        }
     };
     Unfinished { gravity, sentence }
 }
 
 /// What broke into a job, as a clause.
-pub fn interruption(cause: Interruption) -> &'static str {
+pub fn interruption(cause: Interruption) -> EndedMessage {
     match cause {
-        Interruption::Stop => "Stop was pressed",
-        Interruption::DeadMan => {
-            "this computer answered late: the window did not renew the motion within 250 ms"
-        }
-        Interruption::Disarm => "it was disarmed",
-        Interruption::Closing => "the link was closed",
-        Interruption::Cancelled => "it was cancelled",
-        Interruption::TimeLimit => "it took too long",
+        Interruption::Stop => EndedMessage::StopPressed,
+        Interruption::DeadMan => EndedMessage::DeadMan,
+        Interruption::Disarm => EndedMessage::Disarmed,
+        Interruption::Closing => EndedMessage::LinkClosed,
+        Interruption::Cancelled => EndedMessage::Cancelled,
+        Interruption::TimeLimit => EndedMessage::TookLong,
     }
 }
 
 /// What is said at the end of such a job; nothing before.
-pub fn said(ended: Option<Result<(), Unfinished>>, done: &str) -> Vec<Effect> {
+pub fn said(ended: Option<Result<(), Unfinished>>, done: JobMessage) -> Vec<Effect> {
     let said = ended.map(|result| match result {
-        Ok(()) => Effect::Say(Gravity::Note, done.to_owned()),
-        Err(Unfinished { gravity, sentence }) => Effect::Say(gravity, sentence),
+        Ok(()) => Effect::say(Gravity::Note, done),
+        Err(Unfinished { gravity, sentence }) => Effect::say(gravity, sentence),
     });
     said.into_iter().collect()
 }
@@ -177,7 +176,10 @@ mod tests {
         let id = watched.begin(job()).unwrap().id();
         let reported = watched.take_result(ended(id, JobEnding::Interrupted(Interruption::Stop)));
         let sentence = "Did not move the motors to the end: Stop was pressed. The motors were stopped.";
-        let unfinished = Unfinished { gravity: Gravity::Warning, sentence: sentence.to_owned() };
-        assert_eq!(reported, Some(Err(unfinished)));
+        let unfinished = reported.expect("it has ended").expect_err("it was interrupted");
+        assert_eq!(
+            (unfinished.gravity, unfinished.sentence.to_string().as_str()),
+            (Gravity::Warning, sentence)
+        );
     }
 }

@@ -1,5 +1,6 @@
 //! What the assistants of a Motion Mind ask for: writes of registers, and edits.
 
+use brushwork_link::Message;
 use brushwork_link::settings::SettingsImage;
 
 use crate::family_action::{FamilyAction, Host};
@@ -19,7 +20,7 @@ pub enum MindAction {
 }
 
 impl FamilyAction for MindAction {
-    fn act(&self, host: &mut dyn Host) -> Result<(), String> {
+    fn act(&self, host: &mut dyn Host) -> Result<(), Message> {
         match self {
             Self::Turn(image) => {
                 let held = front(host).step_registers();

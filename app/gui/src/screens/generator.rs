@@ -41,7 +41,7 @@ pub fn generator_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         let (text, color) = match plan {
             Ok(legs) if is_armed => (duration_text(&legs), palette.weak_text),
             Ok(legs) => (format!("{}. Arm this screen to run it.", duration_text(&legs)), palette.weak_text),
-            Err(sentence) => (sentence, palette.warning),
+            Err(why) => (why.to_string(), palette.warning),
         };
         ui.add(Label::new(RichText::new(text).small().color(color)).truncate());
     });

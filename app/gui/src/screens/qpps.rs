@@ -72,7 +72,7 @@ fn result_ui(ui: &mut Ui, model: &mut Model) {
             }
         }
         (None, Some(refusal)) => {
-            IndicatorState::Error.line_ui(ui, refusal);
+            IndicatorState::Error.line_ui(ui, &refusal.to_string());
         }
         (None, None) => {
             ui.label(RichText::new("Nothing measured yet.").small().weak());

@@ -40,8 +40,9 @@ fn shown_ui(ui: &mut Ui, message: &Message, commands: &mut Commands) {
     ui.allocate_ui_with_layout(vec2(text_width, HEIGHT), Layout::left_to_right(Align::Center), |ui| {
         ui.set_min_size(vec2(text_width, HEIGHT));
         // Two lines fit; what is longer is shown in full by a pointer over it.
-        let text = ui.add(Label::new(&message.text).wrap()).on_hover_text(&message.text);
-        let spoken = format!("{}: {}", word(message.gravity), message.text);
+        let words = message.text.to_string();
+        let text = ui.add(Label::new(&words).wrap()).on_hover_text(&words);
+        let spoken = format!("{}: {words}", word(message.gravity));
         text.widget_info(|| WidgetInfo::labeled(Role::Alert, true, &spoken));
     });
     if ui.button("Dismiss").clicked() {

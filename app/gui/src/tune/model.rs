@@ -1,9 +1,9 @@
 //! Tuning as the window keeps it: what is set, what runs, and the runs so far, for each loop of each motor.
 
-use crate::messages::WindowStatusMessage;
-use brushwork_core::messages::TuneMessage;
+use crate::messages::{TuningMessage, WindowCauseMessage, WindowStatusMessage};
+use brushwork_core::messages::{CoreStatusMessage, EndedMessage, TuneMessage};
 use brushwork_core::tune::law::{AnyRegisters, Report, Request as TuneRequest, Setup, Trial, request};
-use brushwork_link::{Event, Identity, Sample, SettingValue, Stream};
+use brushwork_link::{Event, Identity, Message, Sample, SettingValue, Stream};
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::report::Verdict;
 use brushwork_tuning::tune::Method;
@@ -53,10 +53,10 @@ pub enum Afterwards {
 
 impl Afterwards {
     /// Why the run ends.
-    pub const fn why(self) -> &'static str {
+    pub const fn why(self) -> EndedMessage {
         match self {
-            Self::Disconnect => "the link is being closed",
-            Self::Select(_) => "another unit was chosen",
+            Self::Disconnect => EndedMessage::LinkCloses,
+            Self::Select(_) => EndedMessage::OtherUnit,
         }
     }
 
@@ -312,7 +312,7 @@ impl Tuning {
     }
 
     /// Begins a run. It goes on by [`Tuning::next`] in every frame.
-    pub fn start(&mut self, which: Loop, motor: Motor, stream: Option<Stream>) -> Result<(), String> {
+    pub fn start(&mut self, which: Loop, motor: Motor, stream: Option<Stream>) -> Result<(), TuningMessage> {
         self.begin(which, motor, stream, |panel, motor| {
             let setting = Setting { level: panel.level(), ..panel.setting };
             Ok(Work::Tune(setting.request(motor)))
@@ -320,12 +320,11 @@ impl Tuning {
     }
 
     /// Begins to try the considered gains on the machine.
-    pub fn verify(&mut self, which: Loop, stream: Option<Stream>) -> Result<(), String> {
+    pub fn verify(&mut self, which: Loop, stream: Option<Stream>) -> Result<(), TuningMessage> {
         let motor = self.motor(which);
         self.begin(which, motor, stream, |panel, _| {
             let trial = panel.run().and_then(Run::trial);
-            let missing = || "There are no gains to try. Tune first.".to_owned();
-            trial.map(|trial| Work::Try(Box::new(trial))).ok_or_else(missing)
+            trial.map(|trial| Work::Try(Box::new(trial))).ok_or(TuningMessage::NothingToTry)
         })
     }
 
@@ -334,15 +333,14 @@ impl Tuning {
         which: Loop,
         motor: Motor,
         stream: Option<Stream>,
-        work: impl FnOnce(&Panel, Motor) -> Result<Work, String>,
-    ) -> Result<(), String> {
+        work: impl FnOnce(&Panel, Motor) -> Result<Work, TuningMessage>,
+    ) -> Result<(), TuningMessage> {
         if self.running.is_some() {
-            return Err("A run goes on already. Wait for it or stop it.".to_owned());
+            return Err(TuningMessage::RunGoesOn);
         }
         let panel = self.panel(which, motor);
         if !panel.setting.turns_freely && panel.setting.travel.1 - panel.setting.travel.0 < 40.0 {
-            return Err("The travel has no room: its high end must be at least 40 counts above its low end."
-                .to_owned());
+            return Err(TuningMessage::NoTravel);
         }
         let Setting { encoder, is_encoder_chosen, .. } = panel.setting;
         let target = Target { motor, encoder: is_encoder_chosen.then_some(encoder), stream };
@@ -353,14 +351,14 @@ impl Tuning {
     }
 
     /// Ends a run before its end; the old gains are put back.
-    pub fn abort(&mut self, why: &str) {
+    pub fn abort(&mut self, why: EndedMessage) {
         if let Some((_, sequence)) = &mut self.running {
             sequence.abort(why);
         }
     }
 
     /// As [`Tuning::abort`]; a job that runs ends at its next exchange.
-    pub fn cancel(&mut self, why: &str) {
+    pub fn cancel(&mut self, why: EndedMessage) {
         if let Some((_, sequence)) = &mut self.running {
             sequence.cancel(why);
         }
@@ -413,7 +411,7 @@ impl Tuning {
                     winding.is_due = true;
                 }
                 let panel = self.panel_mut(which, target.motor);
-                let said = said_of(target.motor, &report, why.as_deref(), is_owed);
+                let said = said_of(target.motor, &report, why.clone(), is_owed);
                 panel.add(report);
                 if let Some(run) = panel.run_mut() {
                     run.interrupted = ended.interrupted;
@@ -429,15 +427,14 @@ impl Tuning {
             }
             (Work::PutBack, ..) if is_owed => owed_effect(),
             (Work::PutBack, ..) => {
-                Effect::Say(Gravity::Note, WindowStatusMessage::GainsBack { motor: target.motor }.to_string())
+                Effect::say(Gravity::Note, WindowStatusMessage::GainsBack { motor: target.motor })
             }
-            _ => Effect::Say(
+            _ => Effect::say(
                 Gravity::Warning,
                 WindowStatusMessage::NotTunedFor {
                     motor: target.motor,
-                    why: why.unwrap_or_else(|| "nothing came of it".to_owned()),
-                }
-                .to_string(),
+                    why: why.unwrap_or_else(|| TuningMessage::NothingCame.into()),
+                },
             ),
         });
         // What matters most is said last, which is what stays in view.
@@ -445,7 +442,7 @@ impl Tuning {
             effects.push(owed_effect());
         }
         if ended.restored.is_some_and(|restored| restored.loop_left_off) {
-            effects.push(Effect::Say(Gravity::Warning, TuneMessage::LeftOff.to_string()));
+            effects.push(Effect::say(Gravity::Warning, TuneMessage::LeftOff));
         }
         effects
     }
@@ -533,44 +530,46 @@ impl Tuning {
 }
 
 /// Why a run came to less than was asked for, in the window's words.
-fn clause(why: &Why) -> String {
+fn clause(why: &Why) -> Message {
     match why {
-        Why::Interrupted(cause) => interruption(*cause).to_owned(),
-        Why::Failed(_) | Why::Panicked(_) | Why::Ended(_) => why.to_string(),
+        Why::Interrupted(cause) => interruption(*cause).into(),
+        Why::Failed(failure) => failure.message(),
+        Why::Ended(why) => why.clone(),
+        Why::Panicked(word) => TuningMessage::Panicked { word: word.clone() }.into(),
     }
 }
 
 fn owed_effect() -> Effect {
-    let text = "The run was cut off from the controller, whose own time-out stops the motors. The gains from before are put back when it \
-                answers again: connect again. Switching it off and on brings back those of its EEPROM.";
-    Effect::Say(Gravity::Error, text.to_owned())
+    Effect::say(Gravity::Error, TuningMessage::Owed)
 }
 
-fn said_of(motor: Motor, report: &Report, why: Option<&str>, is_owed: bool) -> Effect {
+fn said_of(motor: Motor, report: &Report, why: Option<Message>, is_owed: bool) -> Effect {
     match (report.verdict, report.causes.first()) {
         (Verdict::Refused, Some(cause)) => {
-            let why = why.map_or_else(|| cause.sentence().into_owned(), |why| format!("{why}."));
-            let back = if is_owed { "" } else { " The motors were stopped and the old gains are in force." };
-            Effect::Say(
-                Gravity::Warning,
-                WindowStatusMessage::NotTuned { motor, why: why.to_string(), back: back.to_string() }
-                    .to_string(),
-            )
+            let why = match why {
+                Some(why) => CoreStatusMessage::Because { why }.into(),
+                None => WindowCauseMessage::Said { text: cause.sentence().into_owned() }.into(),
+            };
+            let said: Message = match is_owed {
+                true => WindowStatusMessage::NotTuned { motor, why }.into(),
+                false => WindowStatusMessage::NotTunedAndStopped { motor, why }.into(),
+            };
+            Effect::say(Gravity::Warning, said)
         }
-        (Verdict::TunedWithWarnings, Some(cause)) => Effect::Say(
+        (Verdict::TunedWithWarnings, Some(cause)) => Effect::say(
             Gravity::Warning,
-            WindowStatusMessage::TunedWithWarning { motor, cause: cause.sentence().to_string() }.to_string(),
+            WindowStatusMessage::TunedWithWarning { motor, cause: cause.sentence().to_string() },
         ),
-        _ => Effect::Say(Gravity::Note, WindowStatusMessage::TunedNotApplied { motor }.to_string()),
+        _ => Effect::say(Gravity::Note, WindowStatusMessage::TunedNotApplied { motor }),
     }
 }
 
 fn said_of_trial(motor: Motor, trial: &Trial) -> Effect {
     match trial.cause {
-        None => Effect::Say(Gravity::Note, WindowStatusMessage::AsPredicted { motor }.to_string()),
-        Some(cause) => Effect::Say(
+        None => Effect::say(Gravity::Note, WindowStatusMessage::AsPredicted { motor }),
+        Some(cause) => Effect::say(
             Gravity::Warning,
-            WindowStatusMessage::Tuned { motor, cause: cause.sentence().to_string() }.to_string(),
+            WindowStatusMessage::Tuned { motor, cause: cause.sentence().to_string() },
         ),
     }
 }

@@ -278,7 +278,7 @@ fn a_register_is_written_to_ram_and_then_stored_and_what_differs_is_marked() {
     assert!(bench.sees_part("The motor stops while the EEPROM is written"));
     bench.press("Store");
     bench.pass_ms(8000);
-    let reported: Vec<_> = bench.model().messages.past().map(|message| message.text.clone()).collect();
+    let reported: Vec<_> = bench.model().messages.past().map(|message| message.text.to_string()).collect();
     assert_eq!(eeprom(&bench, "PTERM"), 7000, "{reported:?}");
     assert!(bench.sees("PTERM in EEPROM: 7000"), "it was read back");
     bench.enter("P", "7100");
@@ -320,7 +320,7 @@ fn restore_says_that_the_motor_stops_and_brings_the_factory_back() {
     assert!(bench.sees_part("The motor stops"));
     bench.press("Restore factory values");
     bench.pass_ms(8000);
-    let reported: Vec<_> = bench.model().messages.past().map(|message| message.text.clone()).collect();
+    let reported: Vec<_> = bench.model().messages.past().map(|message| message.text.to_string()).collect();
     assert_eq!((ram(&bench, 0, "ITERM"), eeprom(&bench, "ITERM")), (35, 35), "{reported:?}");
 }
 

@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use crate::support::bench::Bench;
 use brushwork_core::tune::file;
+use brushwork_gui::messages::WindowCauseMessage;
 use brushwork_gui::model::drawer::Tab;
 use brushwork_gui::model::screen::Screen;
 use brushwork_gui::model::{Model, Phase};
@@ -110,7 +111,7 @@ fn the_status_screen_with_an_error_a_warning_and_a_failure_to_read() {
     fed(bench.model(), 0x1004);
     let text = "Could not set the encoder on 0x80 at /dev/ttyACM0: no answer within 60 ms (3 tries). \
                 Check the cable and the power.";
-    bench.model().messages.fail(text);
+    bench.model().messages.fail(WindowCauseMessage::Said { text: text.to_owned() });
     picture(bench, "status");
 }
 

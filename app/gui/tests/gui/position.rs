@@ -133,7 +133,12 @@ fn at_once_applies_each_change_without_a_button_and_a_refused_one_only_once() {
     // The controller never hears of the next one.
     bench.line.swallow(61, &[]);
     let errors = |bench: &mut Bench| {
-        bench.model().messages.past().filter(|message| message.text.contains("osition P was to be")).count()
+        bench
+            .model()
+            .messages
+            .past()
+            .filter(|message| message.text.to_string().contains("osition P was to be"))
+            .count()
     };
     let before = errors(&mut bench);
     bench.enter("M1 Position P", "13");

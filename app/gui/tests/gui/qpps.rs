@@ -81,7 +81,7 @@ fn assert_at_rest(bench: &mut Bench) {
 /// Why nothing was found.
 fn refusal(bench: &mut Bench) -> String {
     assert_eq!(bench.model().front.qpps.measured, None);
-    bench.model().front.qpps.refusal.clone().expect("it says why")
+    bench.model().front.qpps.refusal.clone().expect("it says why").to_string()
 }
 
 #[track_caller]
@@ -300,7 +300,7 @@ fn stop_cancel_disarming_leaving_and_unplugging_in_the_middle_stand_the_motors()
             bench.pass_ms(1500);
             assert_at_rest(&mut bench);
             assert!(!bench.model().front.qpps.job.is_running());
-            let said = bench.model().messages.past().any(|message| message.text.contains(word));
+            let said = bench.model().messages.past().any(|message| message.text.to_string().contains(word));
             assert!(said, "{word}: {:?}", bench.model().messages.past().collect::<Vec<_>>());
             bench.pass_ms(2000);
             assert_at_rest(&mut bench);

@@ -73,7 +73,7 @@ fn space_stops_from_every_screen_that_there_is() {
 
 /// How many stops the device thread has reported.
 fn stops_seen(bench: &mut Bench) -> usize {
-    bench.model().messages.past().filter(|message| message.text.starts_with("Stopped.")).count()
+    bench.model().messages.past().filter(|message| message.text.to_string().starts_with("Stopped.")).count()
 }
 
 #[test]
@@ -246,9 +246,13 @@ fn the_stop_is_on_the_wire_in_the_frame_of_the_key() {
     let mut bench = driving();
     bench.key(Key::Space);
     bench.pass_ms(300);
-    let reported =
-        bench.model().messages.past().find(|message| message.text.starts_with("Stopped.")).cloned();
-    let reported = reported.expect("a stop is reported").text;
+    let reported = bench
+        .model()
+        .messages
+        .past()
+        .find(|message| message.text.to_string().starts_with("Stopped."))
+        .cloned();
+    let reported = reported.expect("a stop is reported").text.to_string();
     let milliseconds: f64 = reported
         .split("after ")
         .nth(1)

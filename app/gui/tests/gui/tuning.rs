@@ -107,7 +107,7 @@ fn while_running(bench: &mut Bench, mut look: impl FnMut(&Bench)) {
 
 #[track_caller]
 fn run(bench: &mut Bench, which: Loop) -> Run {
-    let said: Vec<String> = bench.model().messages.past().map(|message| message.text.clone()).collect();
+    let said: Vec<String> = bench.model().messages.past().map(|message| message.text.to_string()).collect();
     let run = bench.model().front.tune.front(which).run().cloned();
     run.unwrap_or_else(|| panic!("no run: {said:?}"))
 }

@@ -1,6 +1,7 @@
 //! `brushwork firmware update`: backup, risk, loader, pages.
 
 use crate::messages::{CliFirmwareMessage, CliScriptMessage};
+use brushwork_core::messages::CoreStatusMessage;
 use std::io::{self, IsTerminal as _, Write as _};
 use std::path::Path;
 use std::sync::Arc;
@@ -179,7 +180,7 @@ fn enter_loader(controller: &Controller<'_>, interrupt: &Interrupt) -> Result<()
 /// Sends it and shows how far it is, until it ends. Ctrl-C counts only before the erase.
 fn send(place: LoaderPlace, image: Image, interrupt: &Interrupt) -> Result<Sent, Exit> {
     let upload = Upload::start(place, image)
-        .map_err(|why| Exit::Failed.saying(CliFirmwareMessage::Because { why: why.to_string() }))?;
+        .map_err(|why| Exit::Failed.saying(CoreStatusMessage::Because { why: why.into() }))?;
     let mut shown = String::new();
     let mut warned = false;
     let mut erasing = false;

@@ -1,13 +1,13 @@
 //! What the graph of a link does with files, once per frame and when it is asked to.
 
-use crate::messages::WindowStatusMessage;
+use crate::messages::{GraphMessage, WindowStatusMessage};
 use std::time::{Duration, SystemTime};
 
 use brushwork_link::device::Sample;
 use crossbeam_channel::TryRecvError;
 use egui::Rect;
 
-use super::{Asked, Export, LEAST_PICTURE, OpenAs, Recording, Said, size_text};
+use super::{Asked, Export, LEAST_PICTURE, OpenAs, Recording, Said, Stopping, size_text};
 use crate::files::FileAnswer;
 use crate::graph::live::Opened;
 use crate::graph::picture::draw::Scene;
@@ -43,26 +43,21 @@ impl LiveGraph {
         let Some(recording) = &self.files.recording else { return };
         let progress = recording.recorder.progress();
         let Some(ended) = progress.ended else { return };
-        let path = recording.recorder.path().display();
+        let path = recording.recorder.path().display().to_string();
         said.push(match ended {
-            Err(sentence) => (Gravity::Error, sentence),
-            Ok(()) if progress.dropped > 0 => (
-                Gravity::Warning,
-                format!(
-                    "Recorded {} samples to {path}, but {} were lost: the disk was too slow.",
-                    progress.samples, progress.dropped
-                ),
-            ),
+            Err(failure) => (Gravity::Error, failure),
+            Ok(()) if progress.dropped > 0 => {
+                let (samples, lost) = (progress.samples, progress.dropped);
+                (Gravity::Warning, GraphMessage::RecordedInPart { samples, path, lost }.into())
+            }
             Ok(()) => {
-                let why = recording.stopping.unwrap_or_default();
-                (
-                    Gravity::Note,
-                    format!(
-                        "{why}Recorded {} samples to {path} ({}).",
-                        progress.samples,
-                        size_text(progress.bytes)
-                    ),
-                )
+                let (samples, size) = (progress.samples, size_text(progress.bytes));
+                let said = match recording.stopping {
+                    Some(Stopping::LinkEnded) => GraphMessage::RecordedUntilLost { samples, path, size },
+                    Some(Stopping::OtherChannels) => GraphMessage::RecordedUntilOther { samples, path, size },
+                    Some(Stopping::Asked) | None => GraphMessage::Recorded { samples, path, size },
+                };
+                (Gravity::Note, said.into())
             }
         });
         self.files.recording = None;
@@ -72,9 +67,7 @@ impl LiveGraph {
         let Some(loading) = &self.files.loading else { return };
         let answer = match loading.answer.try_recv() {
             Err(TryRecvError::Empty) => return,
-            Err(TryRecvError::Disconnected) => {
-                Err("Could not open the recording: the system gave no thread.".to_owned())
-            }
+            Err(TryRecvError::Disconnected) => Err(GraphMessage::NoThread.into()),
             Ok(answer) => answer,
         };
         let (name, open_as) = (loading.name.clone(), loading.open_as);
@@ -148,20 +141,19 @@ impl LiveGraph {
         let path = self.files.free_path(form.extension());
         match Recorder::start(&path, form, head) {
             Ok(recorder) => self.files.recording = Some(Recording { recorder, base, stopping: None }),
-            Err(error) => self.files.say(
-                Gravity::Error,
-                WindowStatusMessage::NotRecorded { error: error.to_string() }.to_string(),
-            ),
+            Err(error) => {
+                self.files.say(Gravity::Error, WindowStatusMessage::NotRecorded { error: error.to_string() });
+            }
         }
     }
 
     /// The link is gone: so is what could be recorded.
     pub fn link_ended(&mut self) {
         self.push_gap();
-        self.end_recording("The recording ended with the link. ");
+        self.end_recording(Stopping::LinkEnded);
     }
 
-    pub(in crate::graph) fn end_recording(&mut self, why: &'static str) {
+    pub(in crate::graph) fn end_recording(&mut self, why: Stopping) {
         if let Some(recording) =
             self.files.recording.as_mut().filter(|recording| recording.stopping.is_none())
         {

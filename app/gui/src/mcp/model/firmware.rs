@@ -1,7 +1,8 @@
 //! The firmware window of one link: the file, the risks and whether they were accepted, how far an update is, and what
 //! became of the settings.
 
-use crate::messages::WindowActMessage;
+use crate::messages::{FirmwareMessage, WindowActMessage};
+use brushwork_link::Message;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -64,7 +65,7 @@ pub enum Stage {
     /// The settings are read and kept; nothing is erased yet.
     BackingUp {
         image: Image,
-        kept: Receiver<Result<Kept, String>>,
+        kept: Receiver<Result<Kept, Message>>,
     },
     /// The motors are stopped and the loader is entered.
     Entering {
@@ -77,7 +78,7 @@ pub enum Stage {
         progress: Progress,
     },
     Done(Sent),
-    Failed(String),
+    Failed(Message),
 }
 
 /// What is compared after an update.
@@ -87,7 +88,7 @@ struct After {
     /// Where the controller was connected.
     place: String,
     verdict: Option<Verdict>,
-    reading: Option<JobTicket<Result<ReadReport, String>>>,
+    reading: Option<JobTicket<Result<ReadReport, Message>>>,
     compared: Option<Compared>,
     /// When the last look for the controller began, and how many there were.
     looked_at: Option<Instant>,
@@ -170,12 +171,12 @@ impl Firmware {
         unit: UnitId,
         place: String,
         store: Store,
-    ) -> Result<QueuedJob, String> {
+    ) -> Result<QueuedJob, Message> {
         let model = models::identify(&identity.version_text);
         let bytes = self.file()?;
         let image = suit(bytes, identity, model, stream)
-            .map_err(|error| format!("The file is not sent: {error}."))?;
-        let subject = identity.subject().ok_or("The controller's model is not known.")?;
+            .map_err(|error| FirmwareMessage::NotSent { why: Message::error(error) })?;
+        let subject = identity.subject().ok_or(FirmwareMessage::ModelUnknown)?;
         let (job, kept) = back_up(identity, subject, unit, store)?;
         let before = Some(identity.version_text.clone());
         let announced = image.simulated().map(|simulated| simulated.version);
@@ -191,13 +192,13 @@ impl Firmware {
         place: LoaderPlace,
         simulated: bool,
         store: &Store,
-    ) -> Result<(), String> {
-        let model = self.resumed_model.ok_or("Choose the model that waits in its loader.")?;
+    ) -> Result<(), Message> {
+        let model = self.resumed_model.ok_or(FirmwareMessage::ChooseModel)?;
         let image = suit_model(self.file()?, model, simulated).map_err(|error| {
             if error == Unsuitable::OnlySimulated {
-                return "The file is not sent: it was made for simulated controllers.".to_owned();
+                return FirmwareMessage::ForSimulated;
             }
-            format!("The file is not sent: {error}.")
+            FirmwareMessage::NotSent { why: Message::error(error) }
         })?;
         let announced = image.simulated().map(|simulated| simulated.version);
         self.after = Some(After::new(Expected::resumed(store, target, announced), target.to_owned()));
@@ -225,7 +226,7 @@ impl Firmware {
         if let Event::Failure(failure) = event
             && matches!(self.stage, Stage::Entering { .. })
         {
-            self.not_entered(&failure.to_string());
+            self.not_entered(failure.message());
         }
     }
 
@@ -242,9 +243,9 @@ impl Firmware {
     }
 
     /// The link has ended, or the unit refused, before the loader was entered.
-    pub fn not_entered(&mut self, why: &str) {
+    pub fn not_entered(&mut self, why: impl Into<Message>) {
         if matches!(self.stage, Stage::BackingUp { .. } | Stage::Entering { .. }) {
-            self.stage = Stage::Failed(format!("The update did not begin: {why} Nothing was erased."));
+            self.stage = Stage::Failed(FirmwareMessage::NotBegun { why: why.into() }.into());
         }
     }
 
@@ -288,13 +289,13 @@ impl Firmware {
                     match self.note_begun(store) {
                         Ok(()) => Next::EnterLoader,
                         Err(why) => {
-                            self.not_entered(&why);
+                            self.not_entered(why);
                             Next::Nothing
                         }
                     }
                 }
                 Ok(Err(why)) => {
-                    self.not_entered(&why);
+                    self.not_entered(why);
                     Next::Nothing
                 }
                 Err(_) => Next::Nothing,
@@ -308,7 +309,7 @@ impl Firmware {
                             break;
                         }
                         UploadEvent::Ended(Err(failure)) => {
-                            self.stage = Stage::Failed(failure.to_string());
+                            self.stage = Stage::Failed(failure.message());
                             break;
                         }
                     }
@@ -321,7 +322,7 @@ impl Firmware {
     }
 
     /// Keeps that an update was begun at this place, so that a silent controller is known for what it is.
-    fn note_begun(&self, store: &Store) -> Result<(), String> {
+    fn note_begun(&self, store: &Store) -> Result<(), Message> {
         let Some((after, kept)) =
             self.after.as_ref().and_then(|after| Some((after, after.expected.kept.as_ref()?)))
         else {
@@ -337,7 +338,7 @@ impl Firmware {
             file: Path::new(self.path.trim()).to_owned(),
             backup: kept.name.clone(),
         };
-        store.open_update(&begun).map_err(|error| error.to_string())
+        store.open_update(&begun).map_err(Message::error)
     }
 
     /// The image was sent and nobody is connected: whether the controller is to be looked for now.
@@ -375,7 +376,7 @@ impl Firmware {
         }
         let Some(subject) = identity.subject() else { return Next::Nothing };
         let job = Job::new(WindowActMessage::CompareWithBackup, READ_LIMIT, move |wire| {
-            Ok(read_all(wire, subject).map_err(|failure| failure.to_string()))
+            Ok(read_all(wire, subject).map_err(|failure| failure.message()))
         });
         let (job, reading) = job.queued();
         after.reading = Some(reading);
@@ -417,16 +418,19 @@ impl Firmware {
     fn send(&mut self, image: Image, place: LoaderPlace) {
         self.stage = match Upload::start(place, image) {
             Ok(upload) => Stage::Sending { upload, progress: Progress::Greeting },
-            Err(why) => Stage::Failed(format!("{why}: switch the controller off and on.")),
+            Err(why) => Stage::Failed(FirmwareMessage::CannotSend { why: why.into() }.into()),
         };
     }
 
-    fn file(&self) -> Result<Vec<u8>, String> {
+    fn file(&self) -> Result<Vec<u8>, FirmwareMessage> {
         let path = Path::new(self.path.trim());
-        let reported = |error: std::io::Error| format!("Could not read {}: {error}.", path.display());
+        let reported = |error: std::io::Error| FirmwareMessage::NotFound {
+            path: path.display().to_string(),
+            error: error.to_string(),
+        };
         let length = std::fs::metadata(path).map_err(reported)?.len();
         if length > LARGEST_FILE_BYTES {
-            return Err(format!("The file is not sent: it has {length} bytes, and no image is that large."));
+            return Err(FirmwareMessage::TooLarge { bytes: length });
         }
         std::fs::read(path).map_err(reported)
     }
@@ -438,22 +442,20 @@ fn back_up(
     subject: Subject,
     unit: UnitId,
     store: Store,
-) -> Result<(QueuedJob, Receiver<Result<Kept, String>>), String> {
-    let (read, to_keep) = bounded::<Result<ReadReport, String>>(1);
+) -> Result<(QueuedJob, Receiver<Result<Kept, Message>>), Message> {
+    let (read, to_keep) = bounded::<Result<ReadReport, Message>>(1);
     let (sender, kept) = bounded(1);
     let identity = identity.clone();
     let keep = move || {
-        let report = to_keep.recv_timeout(READ_LIMIT).map_err(|_| "The settings were not read.".to_owned());
+        let report = to_keep.recv_timeout(READ_LIMIT).map_err(|_| FirmwareMessage::NotRead.into());
         let done = report.and_then(|report| update::keep(&report?, &identity, &unit, &store));
         // Whoever closed the window does not want it any more.
         let _ = sender.send(done);
     };
     let thread = std::thread::Builder::new().name("firmware backup".to_owned());
-    thread
-        .spawn(keep)
-        .map_err(|error| format!("Could not start the thread that keeps the backup: {error}."))?;
+    thread.spawn(keep).map_err(|error| FirmwareMessage::NoThread { error: error.to_string() })?;
     let job = Job::new(WindowActMessage::BackUp, READ_LIMIT, move |wire| {
-        let _ = read.try_send(read_all(wire, subject).map_err(|failure| failure.to_string()));
+        let _ = read.try_send(read_all(wire, subject).map_err(|failure| failure.message()));
         Ok(())
     });
     // What was read goes to the thread that keeps it.

@@ -1,6 +1,6 @@
 //! What the window keeps of an MCP's own: the firmware update, the composer of raw commands, and what its settings mean.
 
-use brushwork_link::{Event, Failure};
+use brushwork_link::{Event, Failure, Message};
 
 pub mod composer;
 mod diagnosis;
@@ -10,6 +10,7 @@ mod pins;
 mod script;
 
 use crate::family::Own;
+use crate::messages::FirmwareMessage;
 use crate::model::connection::Connection;
 use composer::Composer;
 use firmware::{Firmware, Stage};
@@ -32,7 +33,7 @@ impl Own for McpConnection {
     }
 
     fn link_ended(&mut self) {
-        self.firmware.not_entered("the link was lost.");
+        self.firmware.not_entered(FirmwareMessage::LinkLost);
         self.composer.forget_waiting();
     }
 
@@ -40,11 +41,10 @@ impl Own for McpConnection {
         self.firmware.stage.is_running()
     }
 
-    fn holds_window(&self) -> Option<&'static str> {
+    fn holds_window(&self) -> Option<Message> {
         let stage = &self.firmware.stage;
-        (matches!(stage, Stage::Sending { .. }) && !stage.can_be_cancelled()).then_some(
-            "The window stays open: a firmware update runs, and ending it now would leave the controller without firmware.",
-        )
+        (matches!(stage, Stage::Sending { .. }) && !stage.can_be_cancelled())
+            .then(|| FirmwareMessage::HoldsWindow.into())
     }
 
     fn not_transacted(&mut self) {

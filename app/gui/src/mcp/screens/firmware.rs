@@ -59,7 +59,7 @@ fn contents_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             done_ui(ui, &sent.sentence(), &model.front.mcp().firmware, identity.is_some(), commands);
         }
         Stage::Failed(sentence) => {
-            ui.label(RichText::new(sentence).color(Palette::of(ui).error));
+            ui.label(RichText::new(sentence.to_string()).color(Palette::of(ui).error));
             if ui.button("Back").clicked() {
                 commands.push(Command::own(FirmwareAction::Dismiss));
             }
@@ -168,8 +168,8 @@ fn running_ui(ui: &mut Ui, stage: &Stage, commands: &mut Commands) {
 
 fn done_ui(ui: &mut Ui, text: &str, firmware: &Firmware, connected: bool, commands: &mut Commands) {
     match firmware.verdict() {
-        Some(verdict) if verdict.is_good() => drop(ui.strong(verdict.sentence())),
-        Some(verdict) => drop(ui.label(RichText::new(verdict.sentence()).color(Palette::of(ui).error))),
+        Some(verdict) if verdict.is_good() => drop(ui.strong(verdict.sentence().to_string())),
+        Some(verdict) => drop(ui.label(RichText::new(verdict.sentence().to_string()).color(Palette::of(ui).error))),
         None if firmware.is_awaited() => {
             ui.strong("The image was sent. Waiting for the controller: whether the update is good shows when it answers.");
         }
@@ -190,7 +190,7 @@ fn done_ui(ui: &mut Ui, text: &str, firmware: &Firmware, connected: bool, comman
             ui.weak("Comparing the settings with the backup.");
         }
         None => {}
-        Some(compared) if compared.differences.is_empty() => drop(ui.label(compared.sentence())),
+        Some(compared) if compared.differences.is_empty() => drop(ui.label(compared.sentence().to_string())),
         Some(compared) => differences_ui(ui, compared, commands),
     }
     if ui.button("Back").clicked() {
@@ -200,7 +200,7 @@ fn done_ui(ui: &mut Ui, text: &str, firmware: &Firmware, connected: bool, comman
 
 fn differences_ui(ui: &mut Ui, compared: &Compared, commands: &mut Commands) {
     let count = compared.differences.len();
-    ui.label(RichText::new(compared.sentence()).color(Palette::of(ui).warning));
+    ui.label(RichText::new(compared.sentence().to_string()).color(Palette::of(ui).warning));
     for line in compared.differences.iter().take(LISTED) {
         ui.label(line);
     }

@@ -6,6 +6,7 @@ use brushwork_link::settings::{Keeper, SettingsImage};
 
 use super::calibration::{Calibrated, Calibration};
 use crate::family::Family;
+use crate::messages::CalibrationMessage;
 use crate::model::message::Gravity;
 use crate::model::settings::{Before, SettingsAction, Summary, UnitKey, UnitSettings};
 use brushwork_core::keep::TrialKeeper;
@@ -20,7 +21,7 @@ pub struct Run {
     pub pin: usize,
     phase: Phase,
     /// Why the last step was not taken, for the user.
-    pub reported: Option<String>,
+    pub reported: Option<CalibrationMessage>,
     /// What the pin had before.
     before: SettingsImage,
     kept: Before,
@@ -70,33 +71,26 @@ impl Run {
 }
 
 /// The input is as it was. What was found is wanted.
-fn closed(unit: &mut UnitSettings, run: &Run, name: &str) -> String {
+fn closed(unit: &mut UnitSettings, run: &Run, pin: String) -> CalibrationMessage {
     unit.put_back(run.kept.clone());
     let Some(found) = run.found else {
-        return format!("{name} is as it was before the calibration.");
+        return CalibrationMessage::PutBack { pin };
     };
     for (field, value) in [("min", found.min), ("center", found.center), ("max", found.max)] {
         unit.set_number(&format!("pin.{}.{field}", run.pin), value);
     }
-    let rest = if found.noise > 0.0 {
-        format!(" At rest it differs by up to {}: a deadband of twice that keeps it still.", found.noise)
-    } else {
-        String::new()
-    };
-    format!(
-        "{name} runs from {} over {} to {}.{rest} Write to give it to the controller.",
-        found.min, found.center, found.max
-    )
+    let Calibrated { min, center, max, noise } = found;
+    match noise > 0.0 {
+        true => CalibrationMessage::RunsWithNoise { pin, min, center, max, noise },
+        false => CalibrationMessage::Runs { pin, min, center, max },
+    }
 }
 
-fn left_open(unit: &mut UnitSettings, run: &Run, name: &str, sentences: Vec<Message>) -> Summary {
+fn left_open(unit: &mut UnitSettings, run: &Run, pin: String, sentences: Vec<Message>) -> Summary {
     want_back(unit, run);
     Summary {
         gravity: Gravity::Error,
-        summary: format!(
-            "{name} could not be put back as it was: it commands nothing now. Its old settings stand here as changes; \
-             write them."
-        ),
+        summary: CalibrationMessage::LeftOpen { pin }.into(),
         sentences,
         address: None,
     }

@@ -1,5 +1,6 @@
 //! Finding the range of an input by moving it: both ends, then the center. Readings that jump are not believed.
 
+use crate::messages::CalibrationMessage;
 use std::collections::VecDeque;
 
 /// What calibration is at.
@@ -73,14 +74,10 @@ impl Calibration {
     }
 
     /// Takes the ends and goes on to the center; a refusal is a sentence.
-    pub fn take_ends(&mut self) -> Result<(), String> {
-        let (lowest, highest) =
-            self.seen().ok_or("No readings have come yet. Wait until the input is read.")?;
+    pub fn take_ends(&mut self) -> Result<(), CalibrationMessage> {
+        let (lowest, highest) = self.seen().ok_or(CalibrationMessage::NoReadings)?;
         if highest - lowest < LEAST_WAY {
-            return Err(format!(
-                "The input moved over {} only. Move it to both ends and hold it there a moment.",
-                highest - lowest
-            ));
+            return Err(CalibrationMessage::ShortTravel { travel: highest - lowest });
         }
         self.ends = Some((lowest, highest));
         self.stage = CalibrationStage::Center;
@@ -89,10 +86,10 @@ impl Calibration {
     }
 
     /// Takes the center, which ends it; a refusal is a sentence.
-    pub fn take_center(&self) -> Result<Calibrated, String> {
-        let (min, max) = self.ends.ok_or("Take the ends first.")?;
+    pub fn take_center(&self) -> Result<Calibrated, CalibrationMessage> {
+        let (min, max) = self.ends.ok_or(CalibrationMessage::EndsFirst)?;
         if self.recent.len() < REST_READINGS {
-            return Err("Too few readings have come yet. Leave the input at rest a moment.".to_owned());
+            return Err(CalibrationMessage::FewReadings);
         }
         let center = median(self.recent.iter().copied());
         let mut distances: Vec<f64> = self.recent.iter().map(|reading| (reading - center).abs()).collect();
@@ -100,16 +97,11 @@ impl Calibration {
         // One reading may jump.
         let noise = distances[REST_READINGS - 2];
         if noise > REST_SPREAD * (max - min) {
-            return Err(format!(
-                "The input does not rest: its readings differ by {noise} from {center}. Let go of it and wait."
-            ));
+            return Err(CalibrationMessage::NotAtRest { noise, center });
         }
         let margin = END_MARGIN * (max - min);
         if center < min + margin || center > max - margin {
-            return Err(format!(
-                "The input rests at {center}, which is one of its ends, {min} and {max}. Let go of it, or move it to \
-                 the middle."
-            ));
+            return Err(CalibrationMessage::RestsAtEnd { center, min, max });
         }
         Ok(Calibrated { min, center, max, noise })
     }
@@ -169,24 +161,24 @@ mod tests {
         for step in 0..10 {
             calibration.read(1300.0 + 50.0 * f64::from(step));
         }
-        assert!(calibration.take_center().unwrap_err().contains("does not rest"));
+        assert!(calibration.take_center().unwrap_err().to_string().contains("does not rest"));
     }
 
     #[test]
     fn an_input_that_was_not_moved_is_told() {
         let mut calibration = Calibration::default();
-        assert!(calibration.take_ends().unwrap_err().contains("No readings"));
+        assert!(calibration.take_ends().unwrap_err().to_string().contains("No readings"));
         hold(&mut calibration, 2000.0, 9);
         calibration.read(2020.0);
-        assert!(calibration.take_ends().unwrap_err().contains("moved over 0 only"));
+        assert!(calibration.take_ends().unwrap_err().to_string().contains("moved over 0 only"));
         assert_eq!(calibration.stage, CalibrationStage::Ends);
     }
 
     #[test]
     fn a_center_at_an_end_is_refused() {
         let mut calibration = with_ends();
-        assert!(calibration.take_center().unwrap_err().contains("Too few readings"));
+        assert!(calibration.take_center().unwrap_err().to_string().contains("Too few readings"));
         hold(&mut calibration, 1110.0, 10);
-        assert!(calibration.take_center().unwrap_err().contains("one of its ends"));
+        assert!(calibration.take_center().unwrap_err().to_string().contains("one of its ends"));
     }
 }

@@ -1,9 +1,10 @@
 //! The voltage clamp test on the settings screen: what is set, what runs, what was found.
 
-use brushwork_link::{Event, JobEnding};
+use brushwork_link::{Event, JobEnding, Message};
 use brushwork_values::Motor;
 use crossbeam_channel::Receiver;
 
+use crate::messages::ClampMessage;
 use crate::model::{Effect, Gravity, UnitSettings, Watched};
 use brushwork_core::motion::clamp::{STEPS, Step, Task};
 
@@ -32,7 +33,7 @@ pub struct ClampTest {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Verdict {
     pub gravity: Gravity,
-    pub sentence: String,
+    pub sentence: Message,
 }
 
 #[derive(Debug)]
@@ -70,7 +71,7 @@ impl ClampTest {
         let verdict = verdict(&task, &self.steps, &ending);
         self.verdict = Some(verdict.clone());
         self.running = None;
-        vec![Effect::Say(verdict.gravity, verdict.sentence)]
+        vec![Effect::say(verdict.gravity, verdict.sentence)]
     }
 
     pub fn forget_job(&mut self) {
@@ -93,45 +94,32 @@ fn verdict(task: &Task, steps: &[Step], ending: &JobEnding) -> Verdict {
     let (gravity, sentence) = match (ending, over) {
         (JobEnding::Done(()), Some(step)) => (
             Gravity::Error,
-            format!(
-                "Stopped at {:.0} %: the main battery reached {:.1} V, the limit is {:.1} V. Use a resistor of fewer \
-                 ohms, or add capacitance across B+ and B-. MCP manual 1.7.5.",
-                step.duty * 100.0,
-                step.peak_volts,
-                task.limit_volts
-            ),
+            ClampMessage::Over {
+                percent: step.duty * 100.0,
+                volts: step.peak_volts,
+                limit: task.limit_volts,
+            }
+            .into(),
         ),
         (JobEnding::Done(()), None) if braked.is_some() => {
-            (Gravity::Error, format!("{} MCP manual 1.7.5.", braked.map(braked_text).unwrap_or_default()))
+            (Gravity::Error, braked.map(braked_message).unwrap_or_default())
         }
-        (JobEnding::Done(()), None) if steps.len() == STEPS => (
-            Gravity::Note,
-            format!(
-                "The main battery stayed below {:.1} V from every speed: {highest:.1} V at most.",
-                task.limit_volts
-            ),
-        ),
-        (JobEnding::Done(()), None) => {
-            (Gravity::Error, "The test ended without a result. Try again.".to_owned())
+        (JobEnding::Done(()), None) if steps.len() == STEPS => {
+            (Gravity::Note, ClampMessage::Stayed { limit: task.limit_volts, highest }.into())
         }
-        (JobEnding::Failed(failure), _) => (Gravity::Error, failure.to_string()),
+        (JobEnding::Done(()), None) => (Gravity::Error, ClampMessage::NoResult.into()),
+        (JobEnding::Failed(failure), _) => (Gravity::Error, failure.message()),
         (JobEnding::Interrupted(cause), _) => {
-            (Gravity::Warning, format!("The test did not run to its end: {cause}. The motors were stopped."))
+            (Gravity::Warning, ClampMessage::CutShort { cause: *cause }.into())
         }
         (JobEnding::Panicked(word), _) => {
-            (Gravity::Error, format!("The test did not run: the program has a fault ({word})."))
+            (Gravity::Error, ClampMessage::Panicked { word: word.clone() }.into())
         }
     };
     Verdict { gravity, sentence }
 }
 
-fn braked_text(step: &Step) -> String {
-    format!(
-        "Stopped at {:.0} %: the main battery was above the controller's maximum for {:.0} ms, {:.1} V at most, so that \
-         the controller braked the motor by itself. The clamp does not take the energy: check its wiring and its output, \
-         or use a resistor of fewer ohms.",
-        step.duty * 100.0,
-        step.high_s * 1000.0,
-        step.peak_volts
-    )
+fn braked_message(step: &Step) -> Message {
+    let (percent, milliseconds) = (step.duty * 100.0, step.high_s * 1000.0);
+    ClampMessage::Braked { percent, milliseconds, volts: step.peak_volts }.into()
 }

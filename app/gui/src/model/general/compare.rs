@@ -29,7 +29,7 @@ pub struct Comparing {
     pub left: Side,
     pub right: Side,
     /// Backups that were opened, by name, as they are for this controller.
-    opened: BTreeMap<String, Result<Fitted, String>>,
+    opened: BTreeMap<String, Result<Fitted, Message>>,
 }
 
 #[derive(Clone, Debug)]
@@ -52,7 +52,7 @@ pub struct Comparison {
     /// What had to be changed of a side to compare it here.
     pub notes: Vec<Message>,
     /// Why nothing can be compared.
-    pub missing: Vec<String>,
+    pub missing: Vec<Message>,
 }
 
 /// What is taken over from the right side.

@@ -21,7 +21,7 @@ pub enum Sheet {
     Unfinished,
     /// What did not go as wanted, a sentence each.
     Report {
-        title: String,
+        title: Message,
         sentences: Vec<Message>,
     },
 }

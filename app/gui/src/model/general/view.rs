@@ -4,6 +4,7 @@ use std::ops::{Deref, DerefMut};
 
 use brushwork_link::{QueuedJob, Stream};
 
+use crate::messages::OutcomeMessage;
 use crate::model::settings::{Calibrating, Ended, Settings, Summary};
 use crate::model::{Effect, General, Gravity, SettingsAction, Sheet, UnitSettings};
 
@@ -100,7 +101,7 @@ impl GeneralView<'_> {
     /// Takes in what work with the settings came to.
     pub fn take(&mut self, ended: Ended) -> Vec<Effect> {
         match ended {
-            Ended::Said(said) => said.into_iter().map(|(gravity, text)| Effect::Say(gravity, text)).collect(),
+            Ended::Said(said) => said.into_iter().map(|(gravity, text)| Effect::say(gravity, text)).collect(),
             Ended::Calibrated(report) => {
                 let summary = self.calibration_step_ended(report);
                 self.tell(summary)
@@ -133,15 +134,14 @@ impl GeneralView<'_> {
         } else if let Some(sheet) = self.waiting_sheet.take() {
             self.open(sheet);
         }
-        vec![Effect::Say(reported.gravity, reported.summary)]
+        vec![Effect::say(reported.gravity, reported.summary)]
     }
 
     fn tell_unfinished(&mut self) -> Vec<Effect> {
         let aftermaths = self.settings.aftermaths();
         let Some(newest) = aftermaths.last() else { return Vec::new() };
-        let text =
-            format!("{} General Settings says which settings are old and which are new.", newest.headline());
+        let text = OutcomeMessage::Unfinished { what: newest.headline() };
         self.open(Sheet::Unfinished);
-        vec![Effect::Say(Gravity::Error, text)]
+        vec![Effect::say(Gravity::Error, text)]
     }
 }

@@ -5,10 +5,12 @@ use brushwork_link::settings::{
     DefaultsReport, Known, ReadFailure, RowState, SaveReport, SaveVerdict, WriteError, WriteReport,
 };
 use brushwork_link::{Failure, JobEnding, Message, ReadReport, SettingsImage, SettingsTable};
+use brushwork_values::Sentences;
 
 use super::summary::Summary;
 use super::unit::UnitSettings;
 use super::work::Running;
+use crate::messages::OutcomeMessage;
 use crate::model::message::Gravity;
 use brushwork_core::settings::{Done, counted};
 use brushwork_core::words::capital;
@@ -31,10 +33,10 @@ pub(super) fn keys_read(
     keys: &[String],
     report: &ReadReport,
     is_quiet: bool,
-) -> Vec<(Gravity, String)> {
+) -> Vec<(Gravity, Message)> {
     unit.note_keys(keys, &report.image);
     let failures = report.unread().filter(|_| !is_quiet);
-    failures.map(|unread| (Gravity::Error, unread.failure.to_string())).collect()
+    failures.map(|unread| (Gravity::Error, unread.failure.message())).collect()
 }
 
 /// For whoever writes single values to RAM.
@@ -42,27 +44,20 @@ pub(super) fn applied(
     unit: &mut UnitSettings,
     done: Done,
     replaced: &SettingsImage,
-) -> Vec<(Gravity, String)> {
+) -> Vec<(Gravity, Message)> {
     let (report, known) = match done {
         Done::Written(report, known) => (report, known),
-        Done::NotWritten(error) => return vec![(Gravity::Error, error.to_string())],
+        Done::NotWritten(error) => return vec![(Gravity::Error, Message::error(error))],
         Done::Read(_) | Done::Reloaded(_) | Done::Saved(_) | Done::Restored(_) => return Vec::new(),
     };
     unit.note_written(&report, replaced, known);
-    let mut said: Vec<(Gravity, String)> =
-        report.warnings.iter().map(|text| (Gravity::Warning, text.to_string())).collect();
+    let mut said: Vec<(Gravity, Message)> =
+        report.warnings.iter().map(|text| (Gravity::Warning, text.clone())).collect();
     let wrong = report.sentences(unit.table());
     let taken = report.rows.iter().filter(|row| row.state == RowState::Taken).count();
     said.push(match wrong.is_empty() {
-        true => (
-            Gravity::Note,
-            format!(
-                "Applied and read back: {} in the controller's RAM. Until they are saved to EEPROM they last \
-                 until it is switched off.",
-                counted(taken)
-            ),
-        ),
-        false => (Gravity::Error, wrong.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ")),
+        true => (Gravity::Note, OutcomeMessage::Applied { settings: counted(taken) }.into()),
+        false => (Gravity::Error, OutcomeMessage::Wrong { sentences: Sentences(wrong) }.into()),
     });
     said
 }
@@ -70,19 +65,17 @@ pub(super) fn applied(
 /// The work ended without a result.
 pub(super) fn nothing_came(running: &Running, ending: &JobEnding) -> Summary {
     let (gravity, summary) = match ending {
-        JobEnding::Interrupted(cause) => (
-            Gravity::Warning,
-            format!("Did not {}: {cause}. What the screen shows is from before.", running.name()),
-        ),
-        JobEnding::Failed(failure) => (Gravity::Error, failure.to_string()),
+        JobEnding::Interrupted(cause) => {
+            (Gravity::Warning, OutcomeMessage::NotDone { act: running.name().clone(), cause: *cause }.into())
+        }
+        JobEnding::Failed(failure) => (Gravity::Error, failure.message()),
         JobEnding::Panicked(word) => (
             Gravity::Error,
-            format!(
-                "Could not {}: the program has a fault ({word}). Read the settings to see what they are.",
-                running.name()
-            ),
+            OutcomeMessage::Panicked { act: running.name().clone(), word: word.clone() }.into(),
         ),
-        JobEnding::Done(()) => (Gravity::Error, format!("Could not {}: no result came.", running.name())),
+        JobEnding::Done(()) => {
+            (Gravity::Error, OutcomeMessage::NoResult { act: running.name().clone() }.into())
+        }
     };
     Summary { gravity, summary, sentences: Vec::new(), address: None }
 }
@@ -90,18 +83,18 @@ pub(super) fn nothing_came(running: &Running, ending: &JobEnding) -> Summary {
 fn read(unit: &mut UnitSettings, report: ReadReport, from_eeprom: bool) -> Summary {
     let (known, failed) = (report.image.len(), unread(&report));
     let absent = rows_of(report.failures.iter().filter(|failure| failure.is_absent));
-    let from = if from_eeprom { "loaded from EEPROM and read" } else { "read" };
     unit.note_read(report, from_eeprom);
     let (gravity, rest) = match (failed, absent) {
-        (0, 0) => (Gravity::Note, String::new()),
-        (0, _) => (Gravity::Note, format!(" This firmware does not have {}.", counted(absent))),
-        _ => (
-            Gravity::Warning,
-            format!(" {} could not be read; each row says why.", capital(&counted(failed))),
-        ),
+        (0, 0) => (Gravity::Note, Message::default()),
+        (0, _) => (Gravity::Note, OutcomeMessage::Absent { settings: counted(absent) }.into()),
+        _ => (Gravity::Warning, OutcomeMessage::Unread { settings: capital(&counted(failed)) }.into()),
     };
-    let summary = format!("{} {from}.{rest}", capital(&counted(known)));
-    Summary { gravity, summary, sentences: Vec::new(), address: None }
+    let settings = capital(&counted(known));
+    let summary = match from_eeprom {
+        true => OutcomeMessage::Loaded { settings, rest },
+        false => OutcomeMessage::Read { settings, rest },
+    };
+    Summary { gravity, summary: summary.into(), sentences: Vec::new(), address: None }
 }
 
 fn unread(report: &ReadReport) -> usize {
@@ -119,30 +112,24 @@ fn written(unit: &mut UnitSettings, report: &WriteReport, replaced: &SettingsIma
     sentences.extend(report.ended_early.iter().map(Failure::message));
     unit.note_written(report, replaced, known);
     let (gravity, summary) = if failed == 0 {
-        let text = format!(
-            "{} written and read back as wanted. Save to EEPROM to keep them over a power cycle.",
-            capital(&counted(wanted))
-        );
-        (Gravity::Note, text)
+        (Gravity::Note, OutcomeMessage::Written { settings: capital(&counted(wanted)) })
     } else {
         sentences.extend(report.warnings.iter().cloned());
-        let text = format!("{failed} of {} did not take; their rows keep the change.", counted(wanted));
-        (Gravity::Error, text)
+        (Gravity::Error, OutcomeMessage::NotTaken { failed, settings: counted(wanted) })
     };
-    Summary { gravity, summary, sentences, address: Some(report.address.get()) }
+    Summary { gravity, summary: summary.into(), sentences, address: Some(report.address.get()) }
 }
 
 fn not_written(error: WriteError) -> Summary {
     let (summary, sentences) = match error {
-        WriteError::Refused { refusals } => (
-            "Nothing was written: some of the changes cannot be.".to_owned(),
-            refusals.into_iter().map(|refusal| refusal.sentence).collect(),
-        ),
+        WriteError::Refused { refusals } => {
+            (OutcomeMessage::SomeCannotBe, refusals.into_iter().map(|refusal| refusal.sentence).collect())
+        }
         WriteError::NotRead { failure } | WriteError::NotKept { failure } => {
-            (format!("Nothing was written. {failure}"), Vec::new())
+            (OutcomeMessage::NothingWritten { failure: failure.message() }, Vec::new())
         }
     };
-    Summary { gravity: Gravity::Error, summary, sentences, address: None }
+    Summary { gravity: Gravity::Error, summary: summary.into(), sentences, address: None }
 }
 
 fn saved(unit: &mut UnitSettings, report: &SaveReport) -> Summary {
@@ -153,7 +140,7 @@ fn saved(unit: &mut UnitSettings, report: &SaveReport) -> Summary {
     };
     let sentences = differences(unit.table(), report);
     unit.note_saved(report);
-    Summary { gravity, summary: report.sentence().to_string(), sentences, address: None }
+    Summary { gravity, summary: report.sentence(), sentences, address: None }
 }
 
 fn differences(table: &SettingsTable, report: &SaveReport) -> Vec<Message> {
@@ -172,10 +159,9 @@ fn restored(unit: &mut UnitSettings, report: DefaultsReport) -> Summary {
     let own = report.differences.len();
     let address = report.address.get();
     unit.note_read(report.read, false);
-    let mut summary =
-        "The controller works with its default settings. Save to EEPROM to keep them.".to_owned();
-    if own > 0 {
-        summary += &format!(" {} came back with another value than listed here.", capital(&counted(own)));
-    }
-    Summary { gravity: Gravity::Note, summary, sentences: Vec::new(), address: Some(address) }
+    let summary = match own {
+        0 => OutcomeMessage::Defaults,
+        _ => OutcomeMessage::OwnDefaults { settings: capital(&counted(own)) },
+    };
+    Summary { gravity: Gravity::Note, summary: summary.into(), sentences: Vec::new(), address: Some(address) }
 }

@@ -7,7 +7,7 @@ use brushwork_link::Message;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Summary {
     pub gravity: Gravity,
-    pub summary: String,
+    pub summary: Message,
     /// More than fits the message line.
     pub sentences: Vec<Message>,
     /// Where the unit answers now, if the work can have changed that.
@@ -15,12 +15,12 @@ pub struct Summary {
 }
 
 impl Summary {
-    pub fn note(summary: String) -> Self {
-        Self { gravity: Gravity::Note, summary, sentences: Vec::new(), address: None }
+    pub fn note(summary: impl Into<Message>) -> Self {
+        Self { gravity: Gravity::Note, summary: summary.into(), sentences: Vec::new(), address: None }
     }
 
     /// For the message line alone.
-    pub(super) fn said(self) -> Vec<(Gravity, String)> {
+    pub(super) fn said(self) -> Vec<(Gravity, Message)> {
         vec![(self.gravity, self.summary)]
     }
 }

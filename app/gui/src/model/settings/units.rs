@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 
 use brushwork_link::settings::WriteReport;
-use brushwork_link::{Event, Identity, JobEnding, QueuedJob, SettingsImage, Stream};
+use brushwork_link::{Event, Identity, JobEnding, Message, QueuedJob, SettingsImage, Stream};
 
 use super::kept::{Came, Kept};
 use super::outcome;
@@ -39,7 +39,7 @@ pub enum Ended {
     /// An input was opened or closed, or could not be: what was written.
     Calibrated(Option<WriteReport>),
     /// For the message line alone.
-    Said(Vec<(Gravity, String)>),
+    Said(Vec<(Gravity, Message)>),
 }
 
 impl Settings {

@@ -12,6 +12,7 @@ use std::path::PathBuf;
 use brushwork_link::device::Event;
 
 use crate::files::FileDialog;
+use crate::messages::TrafficMessage;
 
 /// What the panel shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -53,15 +54,13 @@ impl Traffic {
     }
 
     /// Writes what the filter lets through to a file; what became of it, as a sentence.
-    pub fn save(&self, path: &PathBuf) -> Result<String, String> {
+    pub fn save(&self, path: &PathBuf) -> Result<TrafficMessage, TrafficMessage> {
         let text = self.log.to_text();
         let lines = self.log.shown_len();
+        let shown = path.display().to_string();
         match std::fs::write(path, text) {
-            Ok(()) => Ok(format!("Saved {lines} transactions to {}.", path.display())),
-            Err(error) => Err(format!(
-                "Could not save the traffic to {}: {error}. Choose another folder or name.",
-                path.display()
-            )),
+            Ok(()) => Ok(TrafficMessage::Saved { count: lines, path: shown }),
+            Err(error) => Err(TrafficMessage::NotSaved { path: shown, error: error.to_string() }),
         }
     }
 }

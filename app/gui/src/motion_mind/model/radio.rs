@@ -1,5 +1,6 @@
 //! The R/C calibration assistant (Motion Mind manual 4.3): the stick in the middle, forward, back; what RCMAX and RCMIN come to.
 
+use crate::messages::RadioMessage;
 /// Steps of RCCOUNT in 1.5 ms.
 const MIDDLE: i64 = 864;
 /// The middle should be so near to 1.5 ms before the ends are taken (manual, step 1).
@@ -65,32 +66,29 @@ impl Radio {
     }
 
     /// Goes on with the stick as it is now; why not, as a sentence.
-    pub fn go_on(&mut self, count: Option<i64>) -> Result<(), String> {
+    pub fn go_on(&mut self, count: Option<i64>) -> Result<(), RadioMessage> {
         let Some(count) = count else {
-            return Err("No R/C pulse has been read yet.".to_owned());
+            return Err(RadioMessage::NoPulse);
         };
         match self.stage {
             Stage::Idle | Stage::Done => {}
             Stage::Middle => {
                 let off = count - MIDDLE;
                 if off.abs() > MIDDLE_TOLERANCE {
-                    return Err(format!(
-                        "The middle is {:+.3} ms off 1.500 ms. Trim the transmitter until it is there, then go on.",
-                        off as f64 * STEP_MS
-                    ));
+                    return Err(RadioMessage::OffMiddle { milliseconds: off as f64 * STEP_MS });
                 }
                 self.middle = Some(count);
                 self.stage = Stage::Forward;
             }
             Stage::Forward => {
                 if self.forward.is_none_or(|most| most < MIDDLE + LEAST_THROW) {
-                    return Err("The pulse has not become longer. Push the stick fully forward; if it gets shorter, reverse the channel at the transmitter.".to_owned());
+                    return Err(RadioMessage::NotLonger);
                 }
                 self.stage = Stage::Backward;
             }
             Stage::Backward => {
                 if self.backward.is_none_or(|least| least > MIDDLE - LEAST_THROW) {
-                    return Err("The pulse has not become shorter. Pull the stick fully back.".to_owned());
+                    return Err(RadioMessage::NotShorter);
                 }
                 self.stage = Stage::Done;
             }
@@ -141,12 +139,12 @@ mod tests {
     fn a_middle_that_is_off_and_a_stick_that_was_not_moved_are_told() {
         let mut radio = Radio::default();
         radio.start();
-        assert!(radio.go_on(Some(900)).unwrap_err().contains("+0.062 ms"));
+        assert!(radio.go_on(Some(900)).unwrap_err().to_string().contains("+0.062 ms"));
         assert!(radio.go_on(None).is_err());
         radio.note(864);
         radio.go_on(Some(864)).unwrap();
         radio.note(870);
-        assert!(radio.go_on(Some(870)).unwrap_err().contains("fully forward"));
+        assert!(radio.go_on(Some(870)).unwrap_err().to_string().contains("fully forward"));
         assert_eq!(radio.result(false), None);
     }
 }

@@ -18,7 +18,7 @@ pub fn compare_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
     sides_ui(ui, general);
     let comparison = general.comparison();
     for missing in &comparison.missing {
-        indicator_ui(ui, IndicatorState::Unknown, missing);
+        indicator_ui(ui, IndicatorState::Unknown, &missing.to_string());
     }
     for note in &comparison.notes {
         indicator_ui(ui, IndicatorState::Warning, note);

@@ -58,7 +58,7 @@ fn content_ui(
         Sheet::Read => read_ui(ui, unit, words),
         Sheet::Write => write_ui(ui, unit, stream),
         Sheet::Defaults => defaults_ui(ui, unit, words),
-        Sheet::Report { title, sentences } => report_ui(ui, title, sentences),
+        Sheet::Report { title, sentences } => report_ui(ui, &title.to_string(), sentences),
         _ => Vec::new(),
     }
 }

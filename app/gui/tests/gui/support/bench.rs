@@ -235,7 +235,7 @@ impl Bench {
 
     /// Everything the window has said.
     pub fn said(&mut self) -> Vec<String> {
-        self.model().messages.past().map(|message| message.text.clone()).collect()
+        self.model().messages.past().map(|message| message.text.to_string()).collect()
     }
 
     fn turn_loop(&self, until: Duration) {

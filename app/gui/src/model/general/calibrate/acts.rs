@@ -1,10 +1,12 @@
 //! What General Settings does while an input is calibrated.
 
+use brushwork_link::Message;
 use brushwork_link::device::PinSignal;
 use brushwork_link::settings::{SettingsImage, WriteReport};
 
 use super::{Phase, Run, closed, left_open, want_back};
 use crate::family;
+use crate::messages::CalibrationMessage;
 use crate::model::general::calibration::{Calibration, CalibrationStage};
 use crate::model::{General, GeneralView, Gravity, SettingsAction, Summary};
 
@@ -100,8 +102,8 @@ impl GeneralView<'_> {
         &mut self,
         report: Option<WriteReport>,
     ) -> Summary {
-        let Some(mut run) = self.calibration.take() else { return Summary::note(String::new()) };
-        let Some(unit) = self.settings.unit_at(&run.unit) else { return Summary::note(String::new()) };
+        let Some(mut run) = self.calibration.take() else { return Summary::note(Message::default()) };
+        let Some(unit) = self.settings.unit_at(&run.unit) else { return Summary::note(Message::default()) };
         let sentences = report.as_ref().map(|report| report.sentences(unit.table()));
         let has_taken = sentences.as_ref().is_some_and(Vec::is_empty)
             && report.is_some_and(|report| report.ended_early.is_none());
@@ -110,16 +112,16 @@ impl GeneralView<'_> {
             Phase::Opening if has_taken => {
                 run.phase = Phase::Moving(Calibration::default());
                 self.calibration = Some(run);
-                Summary::note(format!("{name} commands nothing while it is calibrated."))
+                Summary::note(CalibrationMessage::Open { pin: name })
             }
-            Phase::Closing if has_taken => Summary::note(closed(unit, &run, &name)),
-            Phase::Closing => left_open(unit, &run, &name, sentences.unwrap_or_default()),
+            Phase::Closing if has_taken => Summary::note(closed(unit, &run, name)),
+            Phase::Closing => left_open(unit, &run, name, sentences.unwrap_or_default()),
             Phase::Opening | Phase::Moving(_) => {
                 run.phase = Phase::Closing;
                 self.calibration = Some(run);
                 Summary {
                     gravity: Gravity::Error,
-                    summary: format!("{name} could not be opened for calibration. It is put back as it was."),
+                    summary: CalibrationMessage::NotOpened { pin: name }.into(),
                     sentences: sentences.unwrap_or_default(),
                     address: None,
                 }

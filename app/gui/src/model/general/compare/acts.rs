@@ -1,13 +1,15 @@
 //! What General Settings does to set two copies side by side.
 
+use brushwork_core::messages::SideMessage;
 use brushwork_link::Message;
 use brushwork_link::messages::ProfileMessage;
 use brushwork_link::settings::{CopiedMotor, SettingsImage, copy_motor, diff};
 
 use super::{Comparison, Fitted, Side, Take};
+use crate::messages::CompareMessage;
 use crate::model::general::GeneralView;
 use brushwork_core::keep::Backup;
-use brushwork_core::settings::{EEPROM_UNKNOWN, eeprom_title, fitted, known_defaults};
+use brushwork_core::settings::{eeprom_title, fitted, known_defaults};
 
 impl GeneralView<'_> {
     /// What a side is called.
@@ -48,12 +50,12 @@ impl GeneralView<'_> {
         self.comparing.right = right;
     }
 
-    fn fit_backup(&self, name: &str) -> Result<Fitted, String> {
+    fn fit_backup(&self, name: &str) -> Result<Fitted, Message> {
         let backup = self.settings.backups().iter().find(|backup| backup.name == name);
         let Some((backup, unit)) = backup.zip(self.unit()) else {
-            return Err("The backup is not there any more.".to_owned());
+            return Err(CompareMessage::BackupGone.into());
         };
-        let opened = backup.open().map_err(|error| error.to_string())?;
+        let opened = backup.open().map_err(Message::error)?;
         let corrected: Vec<Message> = opened.corrected.iter().cloned().map(Message::error).collect();
         let upgrades = opened.upgraded.len();
         let (profile, mut changes) = fitted(opened, unit.table());
@@ -98,19 +100,19 @@ impl GeneralView<'_> {
         comparison
     }
 
-    fn image_of(&self, side: &Side) -> Result<Fitted, String> {
+    fn image_of(&self, side: &Side) -> Result<Fitted, Message> {
         let plain = |image: &SettingsImage| Fitted { image: image.clone(), changes: Vec::new() };
-        let unit = self.unit().ok_or("No controller is looked at.")?;
+        let unit = self.unit().ok_or(CompareMessage::NoUnit)?;
         match side {
-            Side::Ram => unit.ram().map(plain).ok_or("The settings have not been read.".to_owned()),
+            Side::Ram => unit.ram().map(plain).ok_or(CompareMessage::NotRead.into()),
             Side::Eeprom => match (unit.eeprom(), self.settings.known_eeprom()) {
                 (Some(image), _) => Ok(plain(image)),
                 (None, Some(known)) => Ok(plain(&known.fitted_to(unit.table()).profile.settings)),
-                (None, None) => Err(EEPROM_UNKNOWN.to_owned()),
+                (None, None) => Err(SideMessage::EepromUnknown.into()),
             },
             Side::Profile => {
                 let opened = self.profiles.opened.as_ref();
-                opened.map(|opened| plain(&opened.profile.settings)).ok_or("No profile is open.".to_owned())
+                opened.map(|opened| plain(&opened.profile.settings)).ok_or(CompareMessage::NoProfile.into())
             }
             Side::Default => {
                 let image = match unit.ram() {
@@ -121,7 +123,7 @@ impl GeneralView<'_> {
             }
             Side::Backup(name) => {
                 let opened = self.comparing.opened.get(name).cloned();
-                opened.unwrap_or_else(|| Err("The backup was not opened.".to_owned()))
+                opened.unwrap_or_else(|| Err(CompareMessage::BackupNotOpened.into()))
             }
         }
     }
