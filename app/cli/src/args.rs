@@ -6,12 +6,12 @@ use std::time::Duration;
 use super::tune::TuneArgs;
 use brushwork_canopen::adapter::Form;
 use brushwork_link::FamilyChoice;
-use brushwork_link::family::addresses_text;
 use brushwork_plant::faults::FAULT_SYNTAX;
 use brushwork_plant::machine::StreamIndex;
-use brushwork_values::{Motor, parse_byte};
+use brushwork_values::Motor;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use super::addresses::{self, AddressList};
 use super::examine::ExamineArgs;
 use super::examples;
 use super::family::families;
@@ -62,6 +62,8 @@ pub enum Command {
     /// Find out what a controller answers and how, for a report that its owner can send.
     #[command(display_order = 33)]
     Examine(ExamineArgs),
+    /// Give controllers their addresses, so that several can share a line.
+    Address(AddressArgs),
     /// Drive a motor until the time is over or you stop it.
     Drive(DriveArgs),
     /// Stop both motors at once.
@@ -149,6 +151,7 @@ pub struct NodesArgs {
     "status --connect {sim}",
     "status --connect /dev/ttyACM0 --watch",
     "status --connect tcp:127.0.0.1:7000 --address 0x81 --json",
+    "status --connect /dev/ttyUSB0 --address 0x80-0x84 --together --watch",
 ], ""))]
 pub struct StatusArgs {
     /// The controller.
@@ -163,12 +166,41 @@ pub struct StatusArgs {
     /// Forget first which commands this firmware lacks, as far as that was learned, and ask for them again.
     #[arg(long)]
     pub learn_anew: bool,
+    /// One row for each controller: batteries, temperatures, currents and what it reports.
+    #[arg(long, conflicts_with = "commands")]
+    pub together: bool,
     /// Go on until interrupted.
     #[arg(long)]
     pub watch: bool,
     /// Time between two lines of --watch.
     #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = parse_seconds, requires = "watch")]
     pub interval: Duration,
+}
+
+const ADDRESS_NOTE: &str = "Units that have the same address cannot be told apart: connect new ones one at a time. With several addresses you are told when to \
+     connect the next unit; those before it may stay on the line, and the factory's address is given last. The address is read back and \
+     saved, and nothing is written where replies are garbled, as those of two units at one address are.";
+
+/// Arguments of `brushwork address`.
+#[derive(Debug, Args)]
+#[command(after_help = examples::after("address", &[
+    "address 0x84 --connect /dev/ttyACM0",
+    "address 0x81 --connect /dev/ttyUSB0 --address 0x80 --yes",
+    "address 0x80-0x84 --connect /dev/ttyUSB0",
+], ADDRESS_NOTE))]
+pub struct AddressArgs {
+    /// The new address, or several for one unit after the other.
+    #[arg(value_name = "NEW", value_parser = addresses::parse_made)]
+    pub to: AddressList,
+    /// The controller; without --address the only one on the line, or the only one that has no address of this run.
+    #[command(flatten)]
+    pub connect: ConnectArgs,
+    /// Do it without asking.
+    #[arg(long, short = 'y')]
+    pub yes: bool,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Arguments of `brushwork drive`.
@@ -245,7 +277,8 @@ impl MotorArg {
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
     brushwork stop --connect /dev/ttyACM0\n  \
-    brushwork stop --connect /dev/ttyUSB0,baud=115200 --address 0x81,0x83\n\n\
+    brushwork stop --connect /dev/ttyUSB0,baud=115200 --address 0x81,0x83\n  \
+    brushwork stop --connect /dev/ttyACM0 --connect /dev/ttyACM1\n\n\
     Without --address every controller on the line is told to stop, and asked to confirm it.")]
 pub struct StopArgs {
     /// The line.
@@ -258,7 +291,7 @@ pub struct StopArgs {
 
 const SIM_EXAMPLES: [&str; 5] = [
     "sim --pty /tmp/unit",
-    "sim --port ttl1 --pace --address 0x80,0x81,0x82 --pty /tmp/bus",
+    "sim --port ttl1 --pace --address 0x80-0x84 --pty /tmp/bus",
     "sim --can ascii --node 3,5 --pty /tmp/can",
     "sim --like unit.json --pty /tmp/unit",
     "sim --pty /tmp/unit --fault drop=0.01 --fault 'plant:locked-shaft@4s,motor=1'",
@@ -279,14 +312,14 @@ pub struct SimArgs {
     #[arg(long, value_name = "PRESET", value_delimiter = ',', num_args = 1)]
     pub preset: Vec<String>,
     /// Addresses of simulated units on one line.
-    #[arg(long, value_name = "ADDRESS", value_delimiter = ',', value_parser = parse_unit_number, help = examples::unit_help())]
-    pub address: Vec<u8>,
+    #[arg(long, value_name = "ADDRESS", value_parser = addresses::parse_made, help = examples::unit_help())]
+    pub address: Option<AddressList>,
     /// What a family alone has.
     #[command(flatten)]
     pub of_families: OfFamilies,
-    /// Which of the controller's ports is served.
-    #[arg(long, value_enum, value_name = "PORT", default_value = "usb")]
-    pub port: StreamArg,
+    /// Which of the controller's ports is served; by default usb, which has one controller alone, and ttl1 for several.
+    #[arg(long, value_enum, value_name = "PORT")]
+    pub port: Option<StreamArg>,
     /// Make a pseudo-terminal and a symbolic link to it at PATH.
     #[arg(long, value_name = "PATH", conflicts_with = "tcp")]
     pub pty: Option<PathBuf>,
@@ -346,8 +379,17 @@ pub struct SimArgs {
 pub struct OfFamilies {}
 
 /// A unit's number as typed; what numbers there are depends on the model.
-fn parse_unit_number(text: &str) -> Result<u8, String> {
-    parse_byte(text).ok_or_else(|| format!("\"{text}\" is no address: use that of {}", addresses_text()))
+impl SimArgs {
+    /// The port that is served.
+    pub fn port(&self) -> StreamArg {
+        let several = self.address.as_ref().is_some_and(|list| list.numbers().len() > 1);
+        self.port.unwrap_or(if several { StreamArg::Ttl1 } else { StreamArg::Usb })
+    }
+
+    /// The addresses of its units, or that of one as it comes from the factory.
+    pub fn addresses(&self, factory: u8) -> Vec<u8> {
+        self.address.as_ref().map_or_else(|| vec![factory], |list| list.numbers().to_vec())
+    }
 }
 
 /// Arguments of `brushwork protocol`.

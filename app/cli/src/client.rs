@@ -7,13 +7,13 @@ use std::time::{Duration, Instant};
 
 use brushwork_link::{
     Addresses, ArmScope, ConnectTarget, DeviceHandle, Event, Failure, FamilyChoice, Identity, Job, JobTicket,
-    PollRate, Request, Stream, SystemClock, families,
+    PollRate, Request, Stream, SystemClock,
 };
 use crossbeam_channel::RecvTimeoutError;
 
+use super::addresses::Line;
 use super::examples;
 use super::family;
-use super::shared_args::LineArgs;
 use super::{ConnectArgs, Exit, Family, Interrupt, say};
 use brushwork_core::keep::Store;
 use brushwork_core::session::{self, LIKE, Session, SessionOptions, Simulation};
@@ -54,11 +54,12 @@ impl Client {
         running: Option<Arc<Simulation>>,
         interrupt: &Interrupt,
     ) -> Result<Self, Exit> {
+        alone(args)?;
         let session = open(args, poll, running)?;
         if let Some(simulation) = &session.simulation {
             simulation.unlike().iter().for_each(say);
         }
-        let place = args.connect.as_str();
+        let place = args.place();
         let (identity, stream) =
             wait_for_identity(&session.device, interrupt).map_err(|exit| with_loader(exit, place))?;
         Store::of_user().close_update(place);
@@ -84,12 +85,15 @@ impl Client {
     }
 }
 
-/// Opens the target and looks at its one address; what becomes of that comes as events.
+/// Opens the one line and looks at what is meant of it; what becomes of that comes as events.
 ///
 /// # Errors
 /// Says on standard error what went wrong and gives the exit code.
 pub fn open(args: &ConnectArgs, poll: PollRate, running: Option<Arc<Simulation>>) -> Result<Session, Exit> {
-    let target = target(args)?;
+    let target = match args.connect.len() {
+        1 => line_target(&Line { address: args.address.as_ref(), ..args.line() })?,
+        _ => target(args)?,
+    };
     session::open(&target, options(&target, args, poll), SystemClock::shared(), running)
         .map_err(|error| Exit::NoLink.saying(error))
 }
@@ -99,27 +103,31 @@ pub fn options(target: &ConnectTarget, args: &ConnectArgs, poll: PollRate) -> Se
     SessionOptions { addresses: addresses(target, args), poll, family: args.family }
 }
 
-/// What `--connect` and `--address` name.
+/// What `--connect` and `--address` name, where that is to be one controller.
 ///
 /// # Errors
 /// Says on standard error what cannot be understood.
 pub fn target(args: &ConnectArgs) -> Result<ConnectTarget, Exit> {
-    Ok(at_addresses(parse(&args.connect)?, args.address.as_slice()))
+    alone(args)?;
+    line_target(&Line { address: args.address.as_ref(), ..args.line() })
+}
+
+/// Nothing where one controller is named; what a command does to one at a time is not begun for several.
+fn alone(args: &ConnectArgs) -> Result<(), Exit> {
+    if args.is_several() { Err(Exit::Usage.saying(CliLinkMessage::OneAtATime)) } else { Ok(()) }
 }
 
 /// What `--connect` and `--address` of a whole line name.
 ///
 /// # Errors
 /// Says on standard error what cannot be understood.
-pub fn line_target(args: &LineArgs) -> Result<ConnectTarget, Exit> {
-    let target = parse(&args.connect)?;
+pub fn line_target(line: &Line<'_>) -> Result<ConnectTarget, Exit> {
+    let target = parse(line.connect)?;
     let on_can = matches!(target, ConnectTarget::Can { .. });
-    let one_family =
-        families().iter().any(|family| args.address.iter().all(|address| family.has_address(*address)));
-    if !on_can && !one_family {
+    if !on_can && line.address.is_some_and(|list| !list.is_of_one_family()) {
         return Err(Exit::Usage.saying(CliLinkMessage::OneFamily { addresses: addresses_text() }));
     }
-    Ok(at_addresses(target, &args.address))
+    Ok(at_addresses(target, line.numbers()))
 }
 
 fn parse(target: &str) -> Result<ConnectTarget, Exit> {
@@ -138,10 +146,10 @@ pub fn family(target: &ConnectTarget, args: &ConnectArgs) -> FamilyChoice {
     }
 }
 
-/// The one address that is meant: as given, or the first one of units that are simulated, or the factory's of the family.
+/// What is meant: as given, or the first one of units that are simulated, or the factory's of the family.
 fn addresses(target: &ConnectTarget, args: &ConnectArgs) -> Addresses {
-    match (args.address, family(target, args).family()) {
-        (Some(address), _) => Addresses::Only(address),
+    match (&args.address, family(target, args).family()) {
+        (Some(list), _) => list.sought(),
         (None, Some(family)) => {
             let first = first_of(target, family::of(family));
             Addresses::Only(first.unwrap_or_else(|| family.factory_address()))
@@ -171,6 +179,36 @@ fn at_addresses(target: ConnectTarget, addresses: &[u8]) -> ConnectTarget {
         | ConnectTarget::Can { .. }
         | ConnectTarget::Sim(_)) => other,
     }
+}
+
+/// Those who answer on a line; none where nobody does, which is said.
+///
+/// # Errors
+/// The program was asked to end.
+pub fn found(target: &ConnectTarget, line: &Line<'_>, interrupt: &Interrupt) -> Result<Vec<Identity>, Exit> {
+    let options = SessionOptions { addresses: line.sought(), family: line.family, poll: PollRate::Off };
+    let session = match session::open(target, options, SystemClock::shared(), None) {
+        Ok(session) => session,
+        Err(error) => {
+            say(error);
+            return Ok(Vec::new());
+        }
+    };
+    let mut found = Vec::new();
+    let deadline = Instant::now() + CONNECT_LIMIT;
+    while Instant::now() < deadline {
+        match look_for_event(&session.device, interrupt)? {
+            Ok(Some(Event::Connected(identity))) => found.push(identity),
+            Ok(Some(Event::Selected { .. })) => break,
+            Ok(Some(Event::Failure(failure))) => say(failure),
+            Ok(_) => {}
+            Err(failure) => {
+                say(failure);
+                break;
+            }
+        }
+    }
+    Ok(found)
 }
 
 /// Says what is known of a place at which nobody answers.

@@ -84,7 +84,8 @@ pub fn open_help() -> String {
 
 /// What `--address` of simulated units takes.
 pub fn unit_help() -> String {
-    let units = "Address, or a comma-separated list: one simulated unit for each, on one line";
+    let units =
+        "Address, a comma-separated list or a range (0x80-0x84): one simulated unit for each, on one line";
     format!("{units}: {}", addresses_text())
 }
 

@@ -19,7 +19,23 @@ pub const HELP: &str = "Exit codes:\n  \
     9  mcl: a script has errors\n  \
     10  mcl run: the script was stopped by a fault\n  \
     130  ended by Ctrl-C, SIGTERM, SIGHUP or a closed pipe, after both motors were stopped\n\n\
-    `brushwork sim` ends with 0 then: that is how it is ended.";
+    `brushwork sim` ends with 0 then: that is how it is ended. A command that goes to several controllers ends with the code of the\n  \
+    one that came off worst, which is the first of these that there is: 130, 3, 4, 5, 1, 2, 6, 0.";
+
+/// The worst first.
+const WORST_FIRST: [Exit; 11] = [
+    Exit::Interrupted,
+    Exit::NoLink,
+    Exit::Refused,
+    Exit::NotTaken,
+    Exit::Failed,
+    Exit::Usage,
+    Exit::ScriptFaulted,
+    Exit::ScriptWrong,
+    Exit::TunedWithWarnings,
+    Exit::Different,
+    Exit::Done,
+];
 
 /// How a command ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,6 +65,12 @@ pub enum Exit {
 }
 
 impl Exit {
+    /// The worse of two, for a command that goes to several controllers.
+    #[must_use]
+    pub fn or_worse(self, other: Self) -> Self {
+        WORST_FIRST.into_iter().find(|exit| *exit == self || *exit == other).unwrap_or(self)
+    }
+
     /// Ends so, with a sentence for the person at the terminal.
     #[must_use]
     pub fn saying(self, sentence: impl Display) -> Self {
@@ -69,5 +91,23 @@ impl From<OutputError> for Exit {
 impl From<Exit> for ExitCode {
     fn from(exit: Exit) -> Self {
         Self::from(exit as u8)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_several_controllers_the_one_that_came_off_worst_gives_the_code() {
+        assert_eq!(Exit::Done.or_worse(Exit::Different), Exit::Different);
+        assert_eq!(Exit::NoLink.or_worse(Exit::NotTaken), Exit::NoLink);
+        assert_eq!(Exit::NotTaken.or_worse(Exit::NoLink), Exit::NoLink);
+        assert_eq!(Exit::NoLink.or_worse(Exit::Interrupted), Exit::Interrupted);
+        let codes = WORST_FIRST.map(|exit| (exit as u8).to_string());
+        let told: Vec<&str> =
+            HELP.rsplit_once("there is: ").unwrap().1.trim_end_matches('.').split(", ").collect();
+        let kept: Vec<&str> = codes.iter().map(String::as_str).filter(|code| told.contains(code)).collect();
+        assert_eq!(kept, told, "the page tells the same order");
     }
 }

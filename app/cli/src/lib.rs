@@ -6,6 +6,8 @@
 
 #![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
 
+mod address;
+mod addresses;
 pub mod args;
 mod client;
 mod drive;
@@ -33,6 +35,7 @@ mod status;
 mod stop;
 mod tool;
 pub mod tune;
+mod units;
 mod work;
 
 use crate::messages::CliLinkMessage;
@@ -44,6 +47,7 @@ use args::{Cli, Command, WindowArgs};
 pub use exit::Exit;
 pub use tool::Tool;
 
+pub use addresses::AddressList;
 pub use client::Client;
 pub use family::{Family, Page, Simulated};
 pub use interrupt::Interrupt;
@@ -75,7 +79,7 @@ pub fn run(
             Err(error) => Exit::Failed.saying(error).into(),
         };
     };
-    with_interrupt(|out, interrupt| dispatch(&command, typed, out, interrupt))
+    with_interrupt(|out, interrupt| units::run(command, typed, out, interrupt))
 }
 
 fn with_interrupt(run: impl FnOnce(&mut Output, &Interrupt) -> Result<Exit, Exit>) -> ExitCode {
@@ -96,6 +100,7 @@ fn dispatch(
         Command::List(args) => list::run(args, out, interrupt),
         Command::Nodes(args) => nodes::run(args, out, interrupt),
         Command::Status(args) => status::run(args, out, interrupt),
+        Command::Address(args) => address::run(args, out, interrupt),
         Command::Drive(args) => drive::run(args, out, interrupt),
         Command::Examine(args) => examine::run(args, out, interrupt),
         Command::Stop(args) => stop::run(args, out, interrupt),

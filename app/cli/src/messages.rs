@@ -36,6 +36,8 @@ messages! {
         Warning { conflict: String } "Warning: {conflict}",
         Fitted "The profile has to be changed to fit this controller:",
         NotFitting { unit: String, error: String } "The profile does not fit {unit}, nothing was changed:\n{error}",
+        AddressKept { title: String } "Left out of the profile, since each of several controllers keeps its own: {title}.",
+        OneAddress "An address is given to one controller at a time: `brushwork address` does it.",
         NothingWritten "Nothing was written:",
         NotSavedEither "The settings were not saved to EEPROM, since not all of them took.",
         EndedEarly { failure: String } "Writing ended early. {failure}",
@@ -55,6 +57,8 @@ messages! {
     /// What is said of the link and of moving motors.
     pub enum CliLinkMessage {
         OneFamily { addresses: String } "Could not understand --address: a line has controllers of one family: {addresses}.",
+        OneAtATime "This goes to one controller at a time: give one --connect, and one --address or none.",
+        NotStoppedAt { place: String } "{place} was not found to be stopped.",
         NoTarget { target: String, error: TargetError } "Could not understand --connect {target}: {error}.",
         NoneIdentified { seconds: u64 } "Could not connect: no controller identified itself within {seconds} s.",
         Closed "The link was closed.",
@@ -70,6 +74,33 @@ messages! {
         OtherFamily { title: String, family: &'static str } "{title} is no {family}; its commands are put together in the window's Traffic screen.",
         TerminalOf { title: String, unit: String, port: String, mode: String, protocol: String } "{title} {unit} on {port}: {mode}, {protocol}.",
         TerminalStops "Note: the motor is stopped for this, and what it changes in EEPROM stays.",
+    }
+}
+
+messages! {
+    /// What is said where a command goes to several controllers.
+    pub enum CliUnitsMessage {
+        Begins { unit: String } "{unit}:",
+        NoneAt { place: String } "No controller was found on {place}.",
+        NotTillTheEnd { units: String, of: usize } "Not done to the end on {units}; {of} controllers were asked for.",
+        NoneWritten "Nothing was written to any of them, since this was not to be had from all. Leave out who cannot take it, by --address.",
+        WriteToAll { count: usize } "Write these changes, each to its own of the {count} controllers?",
+        WriteToAllAndSave { count: usize } "Write these changes, each to its own of the {count} controllers, and save all settings of each to EEPROM?",
+    }
+}
+
+messages! {
+    /// What is said where controllers are given addresses.
+    pub enum CliAddressMessage {
+        NobodyConnects "Nobody is here to connect one unit after the other: give one address at a time.",
+        Connect { address: String } "Connect the unit that is to answer at {address}; no other may be on the line that still waits for its address. Then press Enter.",
+        NoneMeant { place: String } "No unit was found on {place} that waits for an address. Connect it, see that it has power, and try again.",
+        SeveralMeant { units: String, place: String } "Several units answer on {place}, at {units}. Say which is meant with --address, or connect it alone.",
+        Taken { address: String, place: String } "{address} was not given to another unit: one answers there on {place} already. Give that one another address first.",
+        Garbled { unit: String } "Nothing was written: the replies of {unit} are garbled, as those of two units at one address are. Connect one alone; if they are garbled then too, look at the wiring, the ground and the baud rate.",
+        CannotHave { unit: String, address: String } "Nothing was written: {unit} cannot be given the address {address} over this line. In an R/C or analog mode it may have switches in its place.",
+        NotGiven { address: String } "The address {address} was not given, or not saved.",
+        NotThereYet { address: String, old: String } "The address {address} was written, but nobody answers there. Switch the unit off and on, and look at {address} and {old} with `brushwork status`.",
     }
 }
 

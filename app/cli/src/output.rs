@@ -3,6 +3,8 @@
 use std::fmt::Display;
 use std::io::{self, Write};
 
+use serde_json::Value;
+
 /// Why printing stopped.
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
@@ -23,19 +25,32 @@ impl From<io::Error> for OutputError {
 /// Where a command's data goes.
 pub struct Output {
     writer: Box<dyn Write>,
+    /// JSON that is kept for one array, while a command goes to several controllers.
+    kept: Option<Vec<Value>>,
 }
 
 impl Output {
     /// Standard output, flushed at every line.
     #[must_use]
     pub fn stdout() -> Self {
-        Self { writer: Box::new(io::stdout()) }
+        Self { writer: Box::new(io::stdout()), kept: None }
     }
 
     /// A sink of the caller's.
     #[cfg(test)]
     pub fn to(writer: Box<dyn Write>) -> Self {
-        Self { writer }
+        Self { writer, kept: None }
+    }
+
+    /// Keeps JSON from now on instead of writing it.
+    pub fn keep_json(&mut self) {
+        self.kept = Some(Vec::new());
+    }
+
+    /// What was kept since the last time: nothing, the value, or an array of several. From now on JSON is written again.
+    pub fn take_json(&mut self) -> Value {
+        let mut kept = self.kept.take().unwrap_or_default();
+        if kept.len() > 1 { Value::Array(kept) } else { kept.pop().unwrap_or_default() }
     }
 
     /// Writes one line.
@@ -59,6 +74,10 @@ impl Output {
 
     /// Writes a value as indented JSON.
     pub fn json(&mut self, value: &impl serde::Serialize) -> Result<(), OutputError> {
+        if let Some(kept) = &mut self.kept {
+            kept.push(serde_json::to_value(value).map_err(io::Error::from)?);
+            return Ok(());
+        }
         let text = serde_json::to_string_pretty(value).map_err(io::Error::from)?;
         self.line(text)
     }

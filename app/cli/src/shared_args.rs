@@ -4,23 +4,21 @@ use std::time::Duration;
 
 use brushwork_link::FamilyChoice;
 use brushwork_link::family::addresses_text;
-use brushwork_link::unit::parse_number;
 use brushwork_plant::world::{CanPeer, I2cDevice, WorldAction};
 use clap::{Args, ValueEnum};
 
-use brushwork_values::parse_byte;
-
+use super::addresses::{self, AddressList, Line};
 use super::examples;
 
-/// Which controller, and how to reach it.
+/// Which controllers, and how to reach them.
 #[derive(Debug, Clone, Args)]
 pub struct ConnectArgs {
-    /// What to connect to.
+    /// What to connect to; several where a command takes several lines.
     #[arg(long, short = 'c', alias = "to", value_name = "TARGET", default_value = examples::target(), help = examples::connect_help())]
-    pub connect: String,
+    pub connect: Vec<String>,
     /// Address of the controller on its line, by default that of a new unit.
-    #[arg(long, value_name = "ADDRESS", value_parser = parse_connect_address, help = address_help())]
-    pub address: Option<u8>,
+    #[arg(long, value_name = "ADDRESS", value_parser = addresses::parse, help = address_help())]
+    pub address: Option<AddressList>,
     /// Which protocol family to look for; without it each in turn.
     #[arg(long, value_name = examples::names(&["auto"]), default_value_t, hide_default_value = true)]
     pub family: FamilyChoice,
@@ -29,21 +27,40 @@ pub struct ConnectArgs {
 /// A line with all its controllers, or some of them.
 #[derive(Debug, Args)]
 pub struct LineArgs {
-    /// What to connect to.
+    /// What to connect to; may be given again for another line.
     #[arg(long, short = 'c', alias = "to", value_name = "TARGET", default_value = examples::target(), help = examples::line_help())]
-    pub connect: String,
-    /// Addresses, or node ids on a CAN bus, with commas between them: 0x80,0x81. Without it all that the line has.
-    #[arg(long, value_name = "ADDRESS", value_delimiter = ',', value_parser = parse_line_address)]
-    pub address: Vec<u8>,
+    pub connect: Vec<String>,
+    /// Addresses, or node ids on a CAN bus: 0x80,0x81, 0x80-0x84 or all. Without it all that the line has.
+    #[arg(long, value_name = "ADDRESS", value_parser = addresses::parse_on_line)]
+    pub address: Option<AddressList>,
     /// Which protocol family to look for; without it each in turn.
     #[arg(long, value_name = examples::names(&["auto"]), default_value_t, hide_default_value = true)]
     pub family: FamilyChoice,
 }
 
 impl ConnectArgs {
+    /// Where the controller is, or the first of several.
+    pub fn place(&self) -> &str {
+        self.connect.first().map_or("", String::as_str)
+    }
+
+    /// Whether several controllers are asked for, by a list of addresses or by several lines.
+    pub fn is_several(&self) -> bool {
+        let is_list = matches!(self.address, Some(AddressList::These(_) | AddressList::All));
+        is_list || self.connect.len() > 1
+    }
+
     /// The whole line that the controller is on.
-    pub fn line(&self) -> LineArgs {
-        LineArgs { connect: self.connect.clone(), address: Vec::new(), family: self.family }
+    pub fn line(&self) -> Line<'_> {
+        Line { connect: self.place(), address: None, family: self.family }
+    }
+}
+
+impl LineArgs {
+    /// Each line with what is meant of it.
+    pub fn lines(&self) -> impl Iterator<Item = Line<'_>> {
+        let line = |connect| Line { connect, address: self.address.as_ref(), family: self.family };
+        self.connect.iter().map(move |connect| line(connect.as_str()))
     }
 }
 
@@ -102,18 +119,9 @@ pub fn parse_seconds(text: &str) -> Result<Duration, String> {
 }
 
 fn address_help() -> String {
-    format!("Address of the controller on its line, by default that of a new unit: {}", addresses_text())
-}
-
-/// Reads an address of any family.
-fn parse_connect_address(text: &str) -> Result<u8, String> {
-    let number = parse_number(text);
-    number.ok_or_else(|| format!("\"{text}\" is no address: use that of {}", addresses_text()))
-}
-
-/// Reads an address of any family or a node id.
-fn parse_line_address(text: &str) -> Result<u8, String> {
-    parse_byte(text).filter(|number| (1..=0x87).contains(number)).ok_or_else(|| {
-        format!("\"{text}\" is no address: use that of {}, CANopen node at 1 to 127", addresses_text())
-    })
+    format!(
+        "Address of the controller on its line, by default that of a new unit: {}. Several as 0x80,0x82 or 0x80-0x84, or all that are \
+         found: all",
+        addresses_text()
+    )
 }

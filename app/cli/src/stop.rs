@@ -7,12 +7,12 @@ use std::time::{Duration, Instant};
 
 use brushwork_link::device::{Addresses, DeviceHandle, Event, Identity, PollRate, StopReport, UnitStop};
 use brushwork_link::transport::ConnectTarget;
-use brushwork_link::{FamilyChoice, Message, SystemClock, families};
-use serde_json::json;
+use brushwork_link::{FamilyChoice, Message, SystemClock};
+use serde_json::{Value, json};
 
+use super::addresses::{Line, in_words};
 use super::args::StopArgs;
 use super::client::{self, CONNECT_LIMIT};
-use super::shared_args::LineArgs;
 use super::{Exit, Interrupt, Output, OutputError, family, say};
 use brushwork_core::session::{self, Session, SessionOptions};
 use brushwork_core::stop::{matters, place};
@@ -20,17 +20,54 @@ use brushwork_core::stop::{matters, place};
 /// How long the controllers may take to confirm: late replies at 2400 bit/s take 6 s.
 const STOP_LIMIT: Duration = Duration::from_secs(10);
 
-/// Stops the line and prints what became of it.
+/// Stops the lines, all at once, and prints what became of each.
 pub fn run(args: &StopArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
-    let stopped = stop_line(&args.line, interrupt)?;
-    let printed = if args.json { stopped.print_json(out) } else { stopped.print(out) };
-    printed?;
-    Ok(stopped.exit())
+    let lines: Vec<Line<'_>> = args.line.lines().collect();
+    let stopped = stop_lines(&lines, interrupt);
+    if let [one] = stopped.as_slice() {
+        let stopped = one.as_ref().map_err(|exit| *exit)?;
+        let printed = if args.json { out.json(&stopped.to_json()) } else { stopped.print(out) };
+        printed?;
+        return Ok(stopped.exit());
+    }
+    let mut objects = Vec::new();
+    let mut worst = Exit::Done;
+    for (line, stopped) in lines.iter().zip(&stopped) {
+        let exit = stopped.as_ref().map_or_else(|exit| *exit, LineStop::exit);
+        worst = worst.or_worse(exit);
+        match stopped {
+            Ok(stopped) if !args.json => stopped.print(out)?,
+            Ok(_) => {}
+            Err(_) => say(CliLinkMessage::NotStoppedAt { place: line.connect.to_owned() }),
+        }
+        let result = stopped.as_ref().ok().map(LineStop::to_json);
+        objects.push(json!({ "connect": line.connect, "exit_code": exit as u8, "result": result }));
+    }
+    if args.json {
+        out.json(&objects)?;
+    }
+    Ok(worst)
+}
+
+/// A thread for each line, so that none waits for the replies of another.
+fn stop_lines(lines: &[Line<'_>], interrupt: &Interrupt) -> Vec<Result<LineStop, Exit>> {
+    std::thread::scope(|scope| {
+        let stop = |line| move || stop_line(line, interrupt);
+        let start =
+            |line| std::thread::Builder::new().name("stop".to_owned()).spawn_scoped(scope, stop(line));
+        let begun: Vec<_> = lines.iter().map(start).collect();
+        let ended = lines.iter().zip(begun).map(|(line, thread)| match thread {
+            Ok(thread) => thread.join().unwrap_or(Err(Exit::Failed)),
+            // Without a thread it is this one's turn.
+            Err(_) => stop_line(line, interrupt),
+        });
+        ended.collect()
+    })
 }
 
 /// Stops what else is on a line, after its own unit was stopped, and says on standard error what became of it. Nobody else there is
 /// nothing to speak of.
-pub fn stop_the_rest(line: &LineArgs, own: &Identity) {
+pub fn stop_the_rest(line: &Line<'_>, own: &Identity) {
     let Ok(stopped) = stop_line(line, &Interrupt::default()) else { return };
     for unit in stopped.report.units.iter().filter(|unit| unit.address != own.address && unit.confirmed) {
         say(stopped.sentence(unit));
@@ -47,11 +84,12 @@ struct LineStop {
     latency: Duration,
 }
 
-fn stop_line(line: &LineArgs, interrupt: &Interrupt) -> Result<LineStop, Exit> {
+fn stop_line(line: &Line<'_>, interrupt: &Interrupt) -> Result<LineStop, Exit> {
     let target = client::line_target(line)?;
-    let asked = match line.address.is_empty() {
-        true => Addresses::Scan,
-        false => Addresses::These(line.address.iter().copied().collect()),
+    let asked = match line.sought() {
+        // No other is told anything, where one is named too.
+        Addresses::Only(number) => Addresses::These([number].into_iter().collect()),
+        sought @ (Addresses::Scan | Addresses::These(_) | Addresses::Factory) => sought,
     };
     let open = |family| {
         let options = SessionOptions { addresses: asked, poll: PollRate::Off, family };
@@ -78,7 +116,7 @@ fn stop_line(line: &LineArgs, interrupt: &Interrupt) -> Result<LineStop, Exit> {
         if !on_can {
             say(CliLinkMessage::NotConfirmedByAll);
         }
-        client::with_loader(Exit::NoLink, &line.connect)
+        client::with_loader(Exit::NoLink, line.connect)
     })?;
     if on_can {
         session.device.stop_all();
@@ -210,7 +248,7 @@ impl LineStop {
         Ok(())
     }
 
-    fn print_json(&self, out: &mut Output) -> Result<(), OutputError> {
+    fn to_json(&self) -> Value {
         let model = |address| self.units.iter().find(|unit| unit.address == address).map(Identity::title);
         let units: Vec<_> = self
             .report
@@ -227,42 +265,11 @@ impl LineStop {
                 })
             })
             .collect();
-        out.json(&json!({
+        json!({
             "confirmed": self.report.confirmed(),
             "latency_s": self.latency.as_secs_f64(),
             "units": units,
             "no_answer_from": self.silent(),
-        }))
-    }
-}
-
-/// Addresses with runs drawn together: "0x81, 0x83 to 0x87".
-fn in_words(addresses: &[u8]) -> String {
-    let name = |address: u8| {
-        let family = families().iter().find(|family| family.has_address(address));
-        family.map_or_else(|| format!("0x{address:02X}"), |family| family.address_text(address))
-    };
-    let runs = addresses.chunk_by(|left, right| left + 1 == *right);
-    let words = runs.map(|run| match run {
-        [first, .., last] if run.len() > 2 => format!("{} to {}", name(*first), name(*last)),
-        run => run.iter().map(|address| name(*address)).collect::<Vec<_>>().join(", "),
-    });
-    words.collect::<Vec<_>>().join(", ")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::in_words;
-
-    #[test]
-    fn runs_of_addresses_are_drawn_together() {
-        brushwork_link::install(&[
-            &brushwork_mcp_client::McpDriver,
-            &brushwork_motion_mind_client::MotionMindDriver,
-        ]);
-        assert_eq!(in_words(&[0x80]), "0x80");
-        assert_eq!(in_words(&[0x80, 0x82, 0x83]), "0x80, 0x82, 0x83");
-        assert_eq!(in_words(&[0x81, 0x83, 0x84, 0x85, 0x87]), "0x81, 0x83 to 0x85, 0x87");
-        assert_eq!(in_words(&[3, 7]), "3, 7");
+        })
     }
 }

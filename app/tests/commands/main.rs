@@ -12,6 +12,7 @@ mod cli_files;
 mod cli_firmware;
 mod cli_profiles;
 mod cli_settings;
+mod cli_several;
 mod diagnosis;
 #[path = "../../gui/tests/gui/support/wait.rs"]
 #[allow(dead_code, reason = "each suite uses its own part of this")]

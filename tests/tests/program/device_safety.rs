@@ -290,6 +290,41 @@ fn stop_all_reaches_every_unit_of_a_bus() {
 }
 
 #[test]
+fn the_ten_motors_of_a_rover_stand_after_one_stop_on_its_line() {
+    let roboclaw = models::lookup("roboclaw-2x7a").expect("in the list");
+    let units = (0x80..=0x84).filter_map(Address::new).map(|address| {
+        let claw = ControllerConfig { address, ..ControllerConfig::of(roboclaw) };
+        Controller::new(claw).expect("the default world is sound")
+    });
+    let bus = Bus::new(units.collect(), StreamIndex::Uart1).expect("a TTL line takes several");
+    let options = DeviceOptions { stream: Some(Stream::Ttl1), simulated: true, ..DeviceOptions::default() };
+    let mut link = VirtualLink::new(bus, StreamIndex::Uart1, options, Vec::new(), 1);
+    link.run_for(ms(4_000));
+    let found = link.events.iter().filter(|(_, event)| matches!(event, Event::Connected(_))).count();
+    assert_eq!(found, 5);
+    for (unit, address) in (0x80..=0x84).filter_map(Address::new).enumerate() {
+        let duty = Packet::new(address, number::DUTY_BOTH, &[16_000, 16_000]);
+        let bytes = duty.encode(Generation::Gen1).expect("every generation has it");
+        link.bus(|bus| bus.controllers_mut()[unit].receive(StreamIndex::Uart1, &bytes));
+    }
+    link.run_for(ms(500));
+    assert!(
+        (0..5).all(|unit| link.duties(unit).iter().all(|duty| *duty > 0.4)),
+        "another program drives all"
+    );
+    // At 38400 bit/s the 16 bytes of each unit take 4.2 ms, those of all 21 ms; then the ramp, in ticks of 3.3 ms.
+    let stop_at = link.now();
+    let after: Vec<_> = (0..5).map(|unit| link.duties_at(stop_at + ms(25) + RAMP_DOWN / 2, unit)).collect();
+    link.handle.stop_all();
+    link.run_for(ms(900));
+    for (unit, duties) in after.iter().enumerate() {
+        assert_eq!(*duties.lock().expect("nothing panicked"), Some([0.0, 0.0]), "unit {unit}");
+    }
+    assert_eq!(link.stops()[0].units.len(), 5);
+    assert!(link.stops()[0].confirmed(), "{:?}", link.stops());
+}
+
+#[test]
 fn arming_is_refused_with_its_reason_by_what_the_simulated_unit_is_set_to() {
     let cases = [
         (number::SET_STREAM, vec![0, 1, 115_200, 0], "time-out of USB is 0"),

@@ -25,18 +25,18 @@ pub fn simulate(sim: &ArgMatches) -> Result<Simulated, Exit> {
         models: args.model.iter().map(String::as_str).collect(),
         generation: args.generation,
         presets: args.preset.iter().map(String::as_str).collect(),
-        addresses: if args.address.is_empty() { vec![Address::ALL[0].get()] } else { args.address.clone() },
+        addresses: args.addresses(Address::ALL[0].get()),
         seed: args.seed,
         can: args.can,
         nodes: args.node.clone(),
         rate_bps: args.baud,
     };
-    if args.baud.is_some() && args.port == StreamArg::Usb {
+    if args.baud.is_some() && args.port() == StreamArg::Usb {
         return Err(Exit::Usage.saying(CliSimMessage::UsbHasNoBaud));
     }
     let spec = SimSpec::from_options(&options)
         .map_err(|error| Exit::Usage.saying(CliSimMessage::NotStarted { why: error.to_string() }))?;
-    let stream = args.port.index();
+    let stream = args.port().index();
     let mut bus = simulation::bus_of(&spec, stream).map_err(|error| Exit::Usage.saying(error.to_string()))?;
     prepare(args, &mut bus)?;
     let what = if args.can.is_some() { spec.to_string() } else { format!("{spec}, port {}", stream.key()) };

@@ -74,7 +74,7 @@ pub fn first_of(text: &str) -> Option<u8> {
 
 fn spec_of(args: &SimArgs, switches: &Switches) -> Result<MotionMindSpec, String> {
     let mode = switches.mode.map_or(Some(Mode::SerialPid), Mode::from_number);
-    let numbers = if args.address.is_empty() { vec![Address::FACTORY.get()] } else { args.address.clone() };
+    let numbers = args.addresses(Address::FACTORY.get());
     let mut addresses = Vec::new();
     for number in numbers {
         let address =

@@ -56,6 +56,47 @@ pub enum SettingsAction {
     Reference(ReferenceArgs),
 }
 
+impl SettingsAction {
+    /// Where it has its controller, if it can go to several.
+    pub fn connect_mut(&mut self) -> Option<&mut ConnectArgs> {
+        match self {
+            Self::Read(args) => Some(&mut args.connect),
+            Self::Write(args) => Some(&mut args.connect),
+            Self::Diff(args) => Some(&mut args.connect),
+            Self::Save(args) | Self::Defaults(args) | Self::Reload(args) => Some(&mut args.connect),
+            Self::Export(args) => Some(&mut args.connect),
+            Self::Import(args) => Some(&mut args.connect),
+            Self::Compare(args) => Some(&mut args.connect),
+            Self::Restore(args) => Some(&mut args.connect),
+            Self::CopyMotor(args) => Some(&mut args.connect),
+            Self::Unfinished(args) => Some(&mut args.connect),
+            // A number at its owner's word goes to one at a time; the others have no controller.
+            Self::Raw(_) | Self::Backups(_) | Self::Reference(_) => None,
+        }
+    }
+
+    /// How it writes, if it shows changes and writes them.
+    pub fn how_mut(&mut self) -> Option<&mut WriteHow> {
+        match self {
+            Self::Write(args) => Some(&mut args.how),
+            Self::Import(args) => Some(&mut args.how),
+            Self::Restore(args) => Some(&mut args.how),
+            Self::CopyMotor(args) => Some(&mut args.how),
+            Self::Read(_)
+            | Self::Raw(_)
+            | Self::Diff(_)
+            | Self::Save(_)
+            | Self::Defaults(_)
+            | Self::Reload(_)
+            | Self::Export(_)
+            | Self::Compare(_)
+            | Self::Backups(_)
+            | Self::Unfinished(_)
+            | Self::Reference(_) => None,
+        }
+    }
+}
+
 /// Arguments of `brushwork settings compare`.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
@@ -224,8 +265,21 @@ pub struct ImportArgs {
     pub how: WriteHow,
 }
 
+/// Which part of writing is done now: all of it, or one of the two rounds that several controllers are written in.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Round {
+    /// Show, ask and write.
+    #[default]
+    Whole,
+    /// Show the changes, and nothing else.
+    Review,
+    /// Write what was shown and agreed to.
+    Agreed,
+}
+
 /// How settings are written.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
+#[allow(clippy::struct_excessive_bools)]
 pub struct WriteHow {
     /// Write without asking.
     #[arg(long, short = 'y')]
@@ -242,6 +296,24 @@ pub struct WriteHow {
     /// Print JSON.
     #[arg(long)]
     pub json: bool,
+    /// Whether it goes to several controllers, of which each keeps its address.
+    #[arg(skip)]
+    pub several: bool,
+    /// Which part of it is done now.
+    #[arg(skip)]
+    pub round: Round,
+}
+
+impl WriteHow {
+    /// Whether it needs no answer now.
+    pub fn is_agreed(&self) -> bool {
+        self.yes || self.round == Round::Agreed
+    }
+
+    /// Whether nothing is written now.
+    pub fn only_shows(&self) -> bool {
+        self.dry_run || self.round == Round::Review
+    }
 }
 
 /// Arguments of `brushwork settings diff`.

@@ -14,6 +14,14 @@ use crate::{Exit, say};
 /// The answer was no, or there is nobody to ask: that is said on standard error. Ctrl-C and a lost link end
 /// the waiting.
 pub fn agreed(question: &str, yes: bool, controller: &Controller<'_>) -> Result<(), Exit> {
+    agreed_while(question, yes, &|| controller.breathe())
+}
+
+/// The same, with something to do while the answer is awaited, which can end that.
+///
+/// # Errors
+/// As for [`agreed`].
+pub fn agreed_while(question: &str, yes: bool, breathe: &dyn Fn() -> Result<(), Exit>) -> Result<(), Exit> {
     if yes {
         return Ok(());
     }
@@ -21,7 +29,7 @@ pub fn agreed(question: &str, yes: bool, controller: &Controller<'_>) -> Result<
         return Err(Exit::Refused.saying(CliSettingsMessage::NobodyToAsk { question: question.to_string() }));
     }
     let _ = write!(io::stderr(), "{question} [y/N] ");
-    let breathe = || controller.breathe().inspect_err(|_| say(CliSettingsMessage::StoppedAsking));
+    let breathe = || breathe().inspect_err(|_| say(CliSettingsMessage::StoppedAsking));
     if is_yes(&line(&breathe)?) { Ok(()) } else { Err(Exit::Refused.saying(CliSettingsMessage::NotWritten)) }
 }
 

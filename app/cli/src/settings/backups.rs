@@ -59,7 +59,7 @@ pub fn restore(args: &RestoreArgs, out: &mut Output, interrupt: &Interrupt) -> R
 /// Writes a backup back and saves it, asked for before.
 pub fn write_back(controller: &Controller<'_>, name: &str, out: &mut Output) -> Result<Exit, Exit> {
     let opened = open(&find(name)?)?;
-    let how = WriteHow { yes: true, dry_run: false, save: true, only: Vec::new(), json: false };
+    let how = WriteHow { yes: true, dry_run: false, save: true, ..WriteHow::default() };
     write::bring_about(controller, Some(opened), &[], &how, out)
 }
 

@@ -19,7 +19,7 @@ mod read;
 mod review;
 mod side_name;
 mod unfinished;
-mod write;
+pub(super) mod write;
 
 use super::{Exit, Interrupt, Output};
 use args::{SettingsAction, SettingsArgs};

@@ -35,13 +35,7 @@ pub fn run(args: &RawArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Ex
         return Ok(Exit::Done);
     }
     say(WARNING);
-    let how = WriteHow {
-        yes: args.own_risk,
-        dry_run: args.dry_run,
-        save: false,
-        only: Vec::new(),
-        json: args.json,
-    };
+    let how = WriteHow { yes: args.own_risk, dry_run: args.dry_run, json: args.json, ..WriteHow::default() };
     let exit = write::carry_out(&controller, &ram, &Wanted::read(changes), &how, out)?;
     if args.dry_run {
         return Ok(exit);

@@ -8,7 +8,7 @@ use brushwork_link::settings::{
 use serde_json::{Value, json};
 use std::fmt::Display;
 
-use super::args::{Assignment, ImportArgs, UnfinishedArgs, WriteArgs, WriteHow};
+use super::args::{Assignment, ImportArgs, Round, UnfinishedArgs, WriteArgs, WriteHow};
 use super::controller::Controller;
 use super::review::{self, Review};
 use super::{ask, keys, memory, profile, read};
@@ -94,7 +94,12 @@ pub fn carry_out(
 ) -> Result<Exit, Exit> {
     let options = wanted.options(controller, ram)?;
     let review = review(controller, ram, wanted, options)?;
-    show(&review, wanted, how, out)?;
+    if how.round != Round::Agreed {
+        show(&review, wanted, how, out)?;
+    }
+    if how.round == Round::Review {
+        return Ok(if review.changes.is_empty() { Exit::Done } else { Exit::Different });
+    }
     if how.dry_run {
         print_json(controller, &review, wanted, how, &Results::default(), out)?;
         return Ok(Exit::Done);
@@ -104,7 +109,7 @@ pub fn carry_out(
         memory::tell_wear(&controller.unit);
     }
     if count > 0 || how.save {
-        ask::agreed(&question(controller, count, how.save), how.yes, controller)?;
+        ask::agreed(&question(controller, count, how.save), how.is_agreed(), controller)?;
     }
     let mut results = Results::default();
     let exit = perform(controller, &ram.table, (wanted, options), how, &mut results);
@@ -115,7 +120,7 @@ pub fn carry_out(
 
 /// How something that was cut short is settled.
 pub fn how(args: &UnfinishedArgs, save: bool) -> WriteHow {
-    WriteHow { yes: args.yes, dry_run: args.dry_run, save, only: Vec::new(), json: args.json }
+    WriteHow { yes: args.yes, dry_run: args.dry_run, save, json: args.json, ..WriteHow::default() }
 }
 
 /// The profile as it is for this controller. Every change is told, and asked about before it is used.
@@ -129,10 +134,13 @@ fn upgraded(
     if sentences.is_empty() {
         return Ok((profile, sentences));
     }
+    if how.round == Round::Agreed {
+        return Ok((profile, sentences));
+    }
     say(CliSettingsMessage::Fitted);
     sentences.iter().for_each(|sentence| say(CliSettingsMessage::Listed { sentence: sentence.to_string() }));
-    if !how.dry_run {
-        ask::agreed("Use the profile with these changes?", how.yes, controller)?;
+    if !how.only_shows() {
+        ask::agreed("Use the profile with these changes?", how.is_agreed(), controller)?;
     }
     Ok((profile, sentences))
 }
@@ -158,12 +166,32 @@ fn wanted(
         let left_out_lines = left_out_lines(controller, ram, &profile);
         let changes = only(&ram.table, &asked.wanted, &how.only)?;
         wanted = Wanted { left_out: asked.left_out, left_out_lines, upgraded, ..Wanted::read(changes) };
+        if how.several {
+            keep_address(&ram.table, &mut wanted);
+        }
     }
     let typed = keys::parse(&ram.table, assignments).map_err(|problems| refused(&problems))?;
+    let addresses = ram.table.subject().family().settings().address_keys();
+    if how.several && addresses.iter().any(|key| typed.get(key).is_some()) {
+        return Err(refused(&[CliSettingsMessage::OneAddress]));
+    }
     typed.iter().for_each(|(key, _)| wanted.taken.remove(key));
     wanted.changes.merge(&typed);
     wanted.changes = changes(&ram.table, &ram.image, &merged(&ram.image, &wanted.changes));
     Ok(wanted)
+}
+
+/// Takes the address out of what a profile has for several controllers: with it all of them would answer at the same.
+fn keep_address(table: &SettingsTable, wanted: &mut Wanted) {
+    for row in table.subject().family().settings().address_keys().iter().filter_map(|key| table.row(key)) {
+        if wanted.changes.get(&row.key).is_some() {
+            let kept = Message::from(CliSettingsMessage::AddressKept { title: row.title() });
+            wanted.left_out_lines.push(kept.to_string());
+            wanted.left_out.push(kept);
+            wanted.changes.remove(&row.key);
+            wanted.taken.remove(&row.key);
+        }
+    }
 }
 
 /// The changes whose keys begin with one of `starts`; all of them where there are none.
@@ -297,6 +325,9 @@ fn tell(table: &SettingsTable, results: &Results, how: &WriteHow, out: &mut Outp
                 out.line("A power cycle brings the old values back unless they are saved (`brushwork settings save`).")?;
             }
         }
+    }
+    if results.write.is_none() && !how.save && how.round == Round::Agreed && !how.json {
+        out.line("There was nothing to write.")?;
     }
     match &results.save {
         Some(report) if report.verdict == SaveVerdict::Verified && !how.json => {

@@ -68,7 +68,7 @@ fn imitate(report: &Path) -> Result<Simulated, Exit> {
 fn start(args: &SimArgs, line: SimulatedLine) -> Result<SimHandle<SimulatedLine>, Exit> {
     let endpoint = endpoint(args)?;
     let faults = args.fault.iter().map(|text| fault(text)).collect::<Result<_, _>>()?;
-    let stream = args.port.index();
+    let stream = args.port().index();
     let options = ServerOptions { stream, pace: args.pace, faults, seed: args.seed };
     Server::spawn(line, options, &endpoint)
         .map_err(|error| Exit::Failed.saying(CliSimMessage::NotStarted { why: error.to_string() }))

@@ -92,6 +92,11 @@ pub trait FamilySettings: Send + Sync {
     /// What a step does, for sentences.
     fn step_title(&self, step: &Step) -> String;
 
+    /// The settings by which a unit has its address: no two units of a line can be given the same.
+    fn address_keys(&self) -> &'static [&'static str] {
+        &[]
+    }
+
     /// The address that a step gives to the unit.
     fn new_address(&self, step: &Step) -> Option<u8>;
 

@@ -41,7 +41,7 @@ pub fn run(args: &UpdateArgs, out: &mut Output, interrupt: &Interrupt) -> Result
         let image = resumed_image(args, bytes, &target)?;
         accept(args, is_simulated(args, &target), &|| interrupted(interrupt))?;
         let announced = image.simulated().map(|simulated| simulated.version);
-        let expected = Expected::resumed(&Store::of_user(), &args.connect.connect, announced);
+        let expected = Expected::resumed(&Store::of_user(), args.connect.place(), announced);
         let sent = send(LoaderPlace::of(&target, None), image, interrupt)?;
         return verify(&sent, &expected, None, args, out, interrupt);
     }
@@ -71,7 +71,7 @@ pub fn run(args: &UpdateArgs, out: &mut Output, interrupt: &Interrupt) -> Result
 /// Keeps that an update was begun here, so that a silent controller is known for what it is.
 fn note(args: &UpdateArgs, controller: &Controller<'_>, kept: &Kept) -> Result<(), Exit> {
     let begun = OpenUpdate {
-        place: args.connect.connect.clone(),
+        place: args.connect.place().to_owned(),
         model: kept.profile.subject.model.key.to_owned(),
         before: controller.identity().version_text.trim().to_owned(),
         file: args.file.clone(),
@@ -246,7 +246,7 @@ fn verify(
             return Err(Exit::Interrupted);
         }
         say(CliFirmwareMessage::NotBack { why: why.to_string() });
-        return Err(client::with_loader(Exit::NoLink, &args.connect.connect));
+        return Err(client::with_loader(Exit::NoLink, args.connect.place()));
     }
     let controller = Controller::connect_to(&args.connect, simulation, interrupt)?;
     let verdict = expected.verdict(controller.identity());
@@ -276,7 +276,8 @@ fn restore(
     if !is_wanted {
         out.line(format!(
             "To write them back: brushwork settings restore {} --save --connect {}",
-            kept.name, args.connect.connect
+            kept.name,
+            args.connect.place()
         ))?;
         return Ok(Exit::Different);
     }

@@ -117,6 +117,10 @@ impl FamilySettings for McpSettings {
         self.read_phrase(step.command)
     }
 
+    fn address_keys(&self) -> &'static [&'static str] {
+        plan::ADDRESS_KEYS
+    }
+
     fn new_address(&self, step: &Step) -> Option<u8> {
         plan::new_address(step)
     }

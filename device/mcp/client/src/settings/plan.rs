@@ -30,6 +30,8 @@ pub fn arguments(planned: &Planned<'_>) -> Result<Vec<Argument>, Message> {
 
 /// The row of the address in the configuration word.
 const CONFIG_ADDRESS: &str = "roboclaw.config.address";
+/// An MCP's address by its own command, a RoboClaw's as a part of the configuration word.
+pub const ADDRESS_KEYS: &[&str] = &["unit.address", CONFIG_ADDRESS];
 
 /// Where a unit answers once it has taken the step, if that moves it.
 pub fn new_address(step: &Step) -> Option<u8> {

@@ -71,6 +71,10 @@ impl FamilySettings for MotionMindSettings {
         steps::step_title(step)
     }
 
+    fn address_keys(&self) -> &'static [&'static str] {
+        &["register.address"]
+    }
+
     fn new_address(&self, step: &Step) -> Option<u8> {
         let given = step.arguments.iter().find(|(name, _)| *name == "ADDRESS")?;
         u8::try_from(given.1).ok()

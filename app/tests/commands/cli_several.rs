@@ -1,0 +1,185 @@
+//! Several controllers at once: one line with five RoboClaws of a rover, two lines, and a chain of Motion Minds.
+
+use crate::cli::{DIFFERENT, DONE, NO_LINK, NOT_TAKEN, REFUSED, Run, Simulated, USAGE, name, program, run};
+use serde_json::Value;
+
+fn rover(addresses: &str) -> Simulated {
+    Simulated::start(&["--model", "roboclaw-2x7a", "--address", addresses])
+}
+
+fn brushwork(line: &Simulated, words: &[&str]) -> Run {
+    run(program().args(words).args(["--connect", &line.port()]))
+}
+
+/// What each of the array's objects has under a pointer.
+fn each(array: &Value, pointer: &str) -> Vec<Value> {
+    let objects = array.as_array().expect("an array of controllers");
+    objects.iter().map(|object| object.pointer(pointer).cloned().unwrap_or_default()).collect()
+}
+
+#[test]
+fn five_boards_of_a_rover_answer_one_command_each_under_its_own_head() {
+    let line = rover("0x80-0x84");
+    let text = brushwork(&line, &["status", "--address", "0x80-0x84"]).ended_with(DONE);
+    for address in 0x80..=0x84 {
+        let text = &text.stdout;
+        assert!(
+            text.contains(&format!("0x{address:02X} on {}:\nRoboClaw 2x7A at 0x{address:02X}", line.port())),
+            "{text}"
+        );
+    }
+    let json = brushwork(&line, &["status", "--address", "all", "--json"]).ended_with(DONE).json();
+    assert_eq!(each(&json, "/address"), [128, 129, 130, 131, 132]);
+    assert_eq!(each(&json, "/result/identity/address"), [128, 129, 130, 131, 132]);
+    let one = brushwork(&line, &["status", "--address", "0x82", "--json"]).ended_with(DONE).json();
+    assert_eq!(one["identity"]["address"], 130, "one address gives what it always gave");
+}
+
+#[test]
+fn a_silent_board_is_named_and_keeps_nobody_from_answering() {
+    let line = rover("0x80,0x82");
+    let run =
+        brushwork(&line, &["settings", "read", "--address", "0x80-0x82", "--json", "motor1.velocity.p"]);
+    let json = run.ended_with(NO_LINK).explains("Not done to the end on 0x81 on").json();
+    assert_eq!(each(&json, "/exit_code"), [DONE, NO_LINK, DONE]);
+    assert_eq!(each(&json, "/result/settings/0/value"), [Value::from(1.0), Value::Null, Value::from(1.0)]);
+}
+
+#[test]
+fn one_profile_goes_to_all_with_the_differences_of_each_and_nobody_loses_its_address() {
+    let line = rover("0x80-0x82");
+    let file = line.folder.path().join("rover.json");
+    brushwork(&line, &["settings", "write", "--address", "0x81", "motor1.velocity.p=2.5", "--yes"])
+        .ended_with(DONE);
+    brushwork(&line, &["settings", "export", "--address", "0x81-0x82", name(&file)]).ended_with(DONE);
+    let (of_81, of_82) =
+        (line.folder.path().join("rover-0x81.json"), line.folder.path().join("rover-0x82.json"));
+    assert!(!file.exists() && of_82.exists());
+    let import = ["settings", "import", name(&of_81), "--address", "0x80-0x82"];
+    let shown =
+        brushwork(&line, &import).ended_with(REFUSED).explains("each to its own of the 3 controllers");
+    let lines: Vec<&str> = shown.stdout.lines().filter(|line| line.contains("velocity.p ")).collect();
+    assert_eq!(lines.len(), 2, "0x81 has it already: {}", shown.stdout);
+    brushwork(&line, &[&import[..], &["--yes"]].concat())
+        .ended_with(DONE)
+        .prints("each of several controllers keeps its own: Address or R/C switches.")
+        .prints("There was nothing to write.");
+    let read =
+        ["settings", "read", "motor1.velocity.p", "roboclaw.config.address", "--address", "all", "--json"];
+    let json = brushwork(&line, &read).ended_with(DONE).json();
+    assert_eq!(each(&json, "/address"), [128, 129, 130], "all are where they were");
+    let values = |key: &str| -> Vec<Value> {
+        let rows =
+            |object: &Value| object.pointer("/result/settings").and_then(Value::as_array).unwrap().clone();
+        let all = json.as_array().unwrap().iter().flat_map(rows);
+        all.filter(|row| row["key"] == key).map(|row| row["value"].clone()).collect()
+    };
+    assert_eq!(values("motor1.velocity.p"), [2.5, 2.5, 2.5]);
+    brushwork(&line, &["settings", "diff", name(&of_81), "--address", "0x80-0x81"]).ended_with(DIFFERENT);
+}
+
+#[test]
+fn nothing_is_written_to_anybody_where_one_cannot_take_it() {
+    let line = rover("0x80-0x81");
+    let write =
+        |addresses, change| brushwork(&line, &["settings", "write", change, "--yes", "--address", addresses]);
+    write("0x80-0x82", "motor1.velocity.p=3")
+        .ended_with(NO_LINK)
+        .explains("Nothing was written to any of them");
+    write("0x80-0x81", "roboclaw.config.address=0x85")
+        .ended_with(NOT_TAKEN)
+        .explains("`brushwork address` does it");
+    let read = ["settings", "read", "motor1.velocity.p", "--address", "0x80-0x81", "--json"];
+    let json = brushwork(&line, &read).ended_with(DONE).json();
+    assert_eq!(each(&json, "/result/settings/0/value"), [1.0, 1.0]);
+}
+
+#[test]
+fn what_goes_to_one_controller_is_refused_for_several() {
+    let line = rover("0x80-0x81");
+    let file = name(line.folder.path()).to_owned();
+    for words in [
+        &["settings", "raw", "motor1.encoder.pin=1"][..],
+        &["tune", "--report", &file],
+        &["firmware", "info"],
+        &["firmware", "update", &file],
+    ] {
+        let run = brushwork(&line, &[words, &["--address", "0x80-0x81"]].concat());
+        assert_eq!(run.code, USAGE, "{run:#?}");
+    }
+}
+
+#[test]
+fn two_lines_are_asked_and_stopped_by_one_command() {
+    let lines = [rover("0x80"), rover("0x80")];
+    let both =
+        |words: &[&str]| run(program().args(words).args(["-c", &lines[0].port(), "-c", &lines[1].port()]));
+    let json = both(&["status", "--json"]).ended_with(DONE).json();
+    assert_eq!(each(&json, "/connect"), [lines[0].port(), lines[1].port()]);
+    let json = both(&["stop", "--json"]).ended_with(DONE).json();
+    assert_eq!(each(&json, "/result/confirmed"), [true, true]);
+    let gone = run(program().args(["stop", "--json", "-c", "/dev/no-such-port", "-c", &lines[1].port()]));
+    let json = gone.ended_with(NO_LINK).explains("/dev/no-such-port was not found to be stopped").json();
+    assert_eq!(each(&json, "/exit_code"), [NO_LINK, DONE]);
+}
+
+#[test]
+fn a_chain_of_motion_minds_is_asked_the_same_way() {
+    let line = Simulated::start(&["--model", "motion-mind-3", "--address", "3,5-6"]);
+    let words = ["status", "--family", "motion-mind", "--address", "3,5-6", "--json"];
+    let json = run(program().args(words).args(["-c", &format!("{},baud=19200", line.port())]))
+        .ended_with(DONE)
+        .json();
+    assert_eq!(each(&json, "/result/identity/address"), [3, 5, 6]);
+}
+
+#[test]
+fn the_state_of_a_rover_stands_in_one_table_with_who_is_silent() {
+    let line = rover("0x80-0x81,0x83");
+    let run = brushwork(&line, &["status", "--together", "--address", "0x80-0x83"]).ended_with(NO_LINK);
+    let rows: Vec<&str> = run.stdout.lines().collect();
+    assert_eq!(rows.len(), 5, "a head and four rows: {run:#?}");
+    assert!(rows[0].contains("BATTERY V") && rows[0].contains("M2 A"), "{}", rows[0]);
+    let first = rows[1];
+    assert!(
+        first.starts_with("0x80 on ") && first.contains("RoboClaw 2x7A") && first.contains(" 24.0 "),
+        "{first}"
+    );
+    assert!(rows[3].starts_with("0x82 on ") && rows[3].ends_with("NO ANSWER"), "{}", rows[3]);
+    assert!(rows[4].ends_with("nothing"), "{}", rows[4]);
+}
+
+#[test]
+fn an_address_is_given_to_one_unit_read_back_and_saved() {
+    let line = rover("0x80,0x82");
+    let address = |words: &[&str]| brushwork(&line, &[&["address"], words].concat());
+    address(&["0x84", "--yes"]).ended_with(REFUSED).explains("at 0x80, 0x82. Say which is meant");
+    address(&["0x82", "--address", "0x80", "--yes"]).ended_with(REFUSED).explains("one answers there");
+    address(&["0x84", "--address", "0x80"]).ended_with(REFUSED).explains("give --yes to do it");
+    let given = address(&["0x84", "--address", "0x80", "--yes"]).ended_with(DONE);
+    given.prints("RoboClaw 2x7A answers at 0x84 on");
+    let reload = ["settings", "reload", "--yes", "--json", "--address", "0x84"];
+    brushwork(&line, &reload).ended_with(DONE);
+    let json = brushwork(&line, &["status", "--json", "--address", "all"]).ended_with(DONE).json();
+    assert_eq!(each(&json, "/address"), [0x82, 0x84]);
+    address(&["0x80-0x81"]).ended_with(REFUSED).explains("give one address at a time");
+}
+
+#[test]
+fn two_units_at_one_address_are_known_by_their_garbled_replies_and_not_moved_together() {
+    let line = rover("0x80-0x81");
+    let moved = ["settings", "write", "roboclaw.config.address=0x80", "--address", "0x81", "--yes"];
+    // They collide from now on, so that its own end is not looked at.
+    brushwork(&line, &moved);
+    let run = brushwork(&line, &["address", "0x84", "--yes"]);
+    run.ended_with(REFUSED).explains("Nothing was written: the replies of 0x80").explains("are garbled");
+    brushwork(&line, &["status", "--address", "0x84"]).ended_with(NO_LINK);
+}
+
+#[test]
+fn a_motion_mind_of_a_chain_is_given_its_address_too() {
+    let line = Simulated::start(&["--model", "motion-mind-3", "--address", "1"]);
+    let target = format!("{},family=motion-mind,baud=19200", line.port());
+    let run = run(program().args(["address", "5", "--yes", "-c", &target]));
+    run.ended_with(DONE).prints("Motion Mind 3 answers at unit 5 on");
+}
