@@ -5,6 +5,7 @@ use std::fmt::Display;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use brushwork_link::device::DisarmReason;
 use brushwork_link::{
     Addresses, ArmScope, ConnectTarget, DeviceHandle, Event, Failure, FamilyChoice, Identity, Job, JobTicket,
     PollRate, Request, Stream, SystemClock,
@@ -16,6 +17,7 @@ use super::examples;
 use super::family;
 use super::{ConnectArgs, Exit, Family, Interrupt, say};
 use brushwork_core::keep::Store;
+use brushwork_core::messages::CoreStatusMessage;
 use brushwork_core::session::{self, LIKE, Session, SessionOptions, Simulation};
 use brushwork_link::family::addresses_text;
 
@@ -261,6 +263,10 @@ pub fn look_for_event(
     }
     match device.events().recv_timeout(EVENT_SLICE) {
         Ok(Event::Lost(failure)) => Ok(Err(failure)),
+        Ok(Event::Stopped(report)) if report.from_outside => {
+            say(CoreStatusMessage::Stopped { reason: DisarmReason::StopFromOutside });
+            Ok(Ok(Some(Event::Stopped(report))))
+        }
         Ok(event) => Ok(Ok(Some(event))),
         Err(RecvTimeoutError::Timeout) => Ok(Ok(None)),
         Err(RecvTimeoutError::Disconnected) => Err(Exit::NoLink.saying(CliLinkMessage::Closed)),

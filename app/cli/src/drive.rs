@@ -149,7 +149,10 @@ fn keep_driving(
 
 #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 fn disarmed(reason: &DisarmReason) -> Exit {
-    say(CoreStatusMessage::Stopping { reason: reason.clone() });
+    // That of another program is said once it has come to its end.
+    if *reason != DisarmReason::StopFromOutside {
+        say(CoreStatusMessage::Stopping { reason: reason.clone() });
+    }
     match reason {
         DisarmReason::LinkLost => Exit::NoLink,
         _ => Exit::Refused,

@@ -68,6 +68,9 @@ messages! {
         NoAnswer "The link gave no answer.",
         NotConfirmedByAll "The stop was written to all of them, but nobody confirmed it. If a motor runs, cut its power.",
         NotConfirmed { seconds: u64 } "Stop was sent, but the controller did not confirm it within {seconds} s. Cut the motor power.",
+        By { holder: String } "The line is held by {holder}, which was asked to stop it.",
+        HolderHalted { holder: String, process: u32 } "The line is held by {holder}, which was halted by a signal and does not answer. Had it been driving a motor, its guardian would have ended it and stopped the motor; where it has none, which arming had said, the controller's own time-out does. End it (kill -9 {process}) and stop again. If a motor runs, cut its power.",
+        HolderSilent { holder: String, process: u32 } "The line is held by {holder}, which does not answer: it stands still. Had it been driving a motor, its guardian would have ended it and stopped the motor; where it has none, which arming had said, the controller's own time-out does. End process {process} and stop again. If a motor runs, cut its power.",
         NoCtrlC { error: String } "Could not take over Ctrl-C, without which motors could not be stopped: {error}.",
         GuardianByHand "`brushwork guardian` is started by the program itself, for a line that it arms.",
         NoQpps "The motor's QPPS is 0, so a position move would not move. Give --speed-limit or set QPPS first.",
@@ -201,5 +204,7 @@ messages! {
         OtherNodes "Nodes that do not answer as a controller that this program knows were told nothing.",
         Broadcast "Units that do not answer were told to stop by a broadcast, which nobody confirms.",
         Silent { addresses: String } "Nobody answered at {addresses}; the stop was written to these addresses too.",
+        NotLookedFor { addresses: String } "The stop was written to {addresses} too, where that program may not have looked for units.",
+        Matter { sentence: String } "{sentence}",
     }
 }

@@ -1,12 +1,13 @@
 //! `brushwork stop`: all motors on a line off, at once, and what could still drive them.
 //!
-//! The stop goes out before anybody is looked for, to whoever may be there; then the units are found and each is asked to confirm.
+//! A program of the same user that holds the line is asked to stop it. Otherwise the stop goes out before anybody is looked for, to whoever may be
+//! there; then the units are found and each is asked to confirm.
 
 use crate::messages::{CliLinkMessage, CliStopMessage};
 use std::time::{Duration, Instant};
 
-use brushwork_link::device::{Addresses, DeviceHandle, Event, Identity, PollRate, StopReport, UnitStop};
-use brushwork_link::transport::ConnectTarget;
+use brushwork_link::device::{Addresses, DeviceHandle, Event, Identity, PollRate, StopReport};
+use brushwork_link::transport::{ConnectTarget, OpenError};
 use brushwork_link::{FamilyChoice, Message, SystemClock};
 use serde_json::{Value, json};
 
@@ -14,11 +15,16 @@ use super::addresses::{Line, in_words};
 use super::args::StopArgs;
 use super::client::{self, CONNECT_LIMIT};
 use super::{Exit, Interrupt, Output, OutputError, family, say};
-use brushwork_core::session::{self, Session, SessionOptions};
-use brushwork_core::stop::{matters, place};
+use brushwork_core::session::{self, Session, SessionError, SessionOptions};
+use brushwork_core::stop::outside::{self, Asked, Holder};
+use brushwork_core::stop::{LineStop, StoppedUnit, matters};
 
 /// How long the controllers may take to confirm: late replies at 2400 bit/s take 6 s.
 const STOP_LIMIT: Duration = Duration::from_secs(10);
+/// How long a program that has let go of a line may take to be gone, its guardian included.
+const HAND_OVER_LIMIT: Duration = Duration::from_secs(2);
+/// Time between two tries to open its port.
+const HAND_OVER_INTERVAL: Duration = Duration::from_millis(20);
 
 /// Stops the lines, all at once, and prints what became of each.
 pub fn run(args: &StopArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
@@ -33,14 +39,14 @@ pub fn run(args: &StopArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
     let mut objects = Vec::new();
     let mut worst = Exit::Done;
     for (line, stopped) in lines.iter().zip(&stopped) {
-        let exit = stopped.as_ref().map_or_else(|exit| *exit, LineStop::exit);
+        let exit = stopped.as_ref().map_or_else(|exit| *exit, Stopped::exit);
         worst = worst.or_worse(exit);
         match stopped {
             Ok(stopped) if !args.json => stopped.print(out)?,
             Ok(_) => {}
             Err(_) => say(CliLinkMessage::NotStoppedAt { place: line.connect.to_owned() }),
         }
-        let result = stopped.as_ref().ok().map(LineStop::to_json);
+        let result = stopped.as_ref().ok().map(Stopped::to_json);
         objects.push(json!({ "connect": line.connect, "exit_code": exit as u8, "result": result }));
     }
     if args.json {
@@ -50,7 +56,7 @@ pub fn run(args: &StopArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
 }
 
 /// A thread for each line, so that none waits for the replies of another.
-fn stop_lines(lines: &[Line<'_>], interrupt: &Interrupt) -> Vec<Result<LineStop, Exit>> {
+fn stop_lines(lines: &[Line<'_>], interrupt: &Interrupt) -> Vec<Result<Stopped, Exit>> {
     std::thread::scope(|scope| {
         let stop = |line| move || stop_line(line, interrupt);
         let start =
@@ -69,22 +75,21 @@ fn stop_lines(lines: &[Line<'_>], interrupt: &Interrupt) -> Vec<Result<LineStop,
 /// nothing to speak of.
 pub fn stop_the_rest(line: &Line<'_>, own: &Identity) {
     let Ok(stopped) = stop_line(line, &Interrupt::default()) else { return };
-    for unit in stopped.report.units.iter().filter(|unit| unit.address != own.address && unit.confirmed) {
+    for unit in stopped.stop.units.iter().filter(|unit| unit.address != own.address && unit.confirmed) {
         say(stopped.sentence(unit));
     }
     stopped.warnings().into_iter().for_each(say);
 }
 
 /// What became of the stop of a line.
-struct LineStop {
-    units: Vec<Identity>,
-    report: StopReport,
+struct Stopped {
+    stop: LineStop,
     asked: Addresses,
-    /// From the request to the last byte handed to the port.
-    latency: Duration,
+    /// The program that did it, where it was another one.
+    by: Option<Holder>,
 }
 
-fn stop_line(line: &Line<'_>, interrupt: &Interrupt) -> Result<LineStop, Exit> {
+fn stop_line(line: &Line<'_>, interrupt: &Interrupt) -> Result<Stopped, Exit> {
     let target = client::line_target(line)?;
     let asked = match line.sought() {
         // No other is told anything, where one is named too.
@@ -94,10 +99,12 @@ fn stop_line(line: &Line<'_>, interrupt: &Interrupt) -> Result<LineStop, Exit> {
     let open = |family| {
         let options = SessionOptions { addresses: asked, poll: PollRate::Off, family };
         session::open(&target, options, SystemClock::shared(), None)
-            .map_err(|error| Exit::NoLink.saying(error))
     };
     let on_can = matches!(target, ConnectTarget::Can { .. });
-    let mut session = open(line.family)?;
+    let mut session = match by_holder(&target, asked, interrupt, || open(line.family))? {
+        Way::Stopped(stopped) => return Ok(stopped),
+        Way::Open(session) => session,
+    };
     let mut found = stop_and_find(&session, on_can, interrupt)?;
     let named = if target.family() == FamilyChoice::AUTO { line.family } else { target.family() };
     let is_unknown = || !on_can && session::family_at(&target, named) == FamilyChoice::AUTO;
@@ -106,7 +113,7 @@ fn stop_line(line: &Line<'_>, interrupt: &Interrupt) -> Result<LineStop, Exit> {
         for family in family::families().iter().filter(|family| family.stopped_addresses().is_empty()) {
             if found.is_err() {
                 drop(session);
-                session = open(FamilyChoice::of(family.family()))?;
+                session = open(FamilyChoice::of(family.family())).map_err(no_link)?;
                 found = stop_and_find(&session, on_can, interrupt)?;
             }
         }
@@ -123,7 +130,63 @@ fn stop_line(line: &Line<'_>, interrupt: &Interrupt) -> Result<LineStop, Exit> {
     }
     let report = wait_for_report(&session.device)?;
     let latency = first.as_ref().unwrap_or(&report).latency();
-    Ok(LineStop { units, report, asked, latency })
+    Ok(Stopped { stop: LineStop { latency, ..LineStop::of(&units, &report) }, asked, by: None })
+}
+
+/// The way on after whoever may hold the line was asked.
+enum Way {
+    /// It was stopped by its holder.
+    Stopped(Stopped),
+    /// It is open here, and to be stopped.
+    Open(Session),
+}
+
+/// Has the line stopped by the program that holds it, or opens it where none does or where it has let go of it.
+fn by_holder(
+    target: &ConnectTarget,
+    asked: Addresses,
+    interrupt: &Interrupt,
+    open: impl Fn() -> Result<Session, SessionError>,
+) -> Result<Way, Exit> {
+    let begun_at = Instant::now();
+    let mut leaves = false;
+    loop {
+        match outside::ask(target, asked, &|| !interrupt.is_raised()) {
+            Asked::Stopped(holder, stop) => {
+                return Ok(Way::Stopped(Stopped { stop, asked, by: Some(holder) }));
+            }
+            Asked::NotServed(holder) => {
+                say(CliLinkMessage::By { holder: holder.name() });
+                return Err(
+                    Exit::Refused.saying(CliLinkMessage::NotConfirmed { seconds: STOP_LIMIT.as_secs() })
+                );
+            }
+            Asked::Silent(holder) => {
+                let process = holder.process;
+                say(match holder.is_halted() {
+                    Some(true) => CliLinkMessage::HolderHalted { holder: holder.name(), process },
+                    Some(false) | None => CliLinkMessage::HolderSilent { holder: holder.name(), process },
+                });
+                leaves = false;
+            }
+            Asked::Gone(_) => leaves = true,
+            Asked::Nobody => {}
+            Asked::Interrupted => return Err(Exit::Interrupted),
+        }
+        match open() {
+            Ok(session) => return Ok(Way::Open(session)),
+            Err(SessionError::Open(OpenError::Busy { .. }))
+                if leaves && begun_at.elapsed() < HAND_OVER_LIMIT =>
+            {
+                interrupt.sleep(HAND_OVER_INTERVAL);
+            }
+            Err(error) => return Err(no_link(error)),
+        }
+    }
+}
+
+fn no_link(error: SessionError) -> Exit {
+    Exit::NoLink.saying(error)
 }
 
 /// Who is on the line, and the report of the stop that went out before; or a sentence on why nobody was found.
@@ -174,9 +237,9 @@ pub fn stop_driven(device: &DeviceHandle, identity: &Identity) -> Result<(), Exi
     if report.confirmed() && !report.left_a_loop_off() { Ok(()) } else { Err(Exit::Refused) }
 }
 
-impl LineStop {
+impl Stopped {
     fn exit(&self) -> Exit {
-        match (self.report.confirmed(), self.asked) {
+        match (self.stop.is_confirmed(), self.asked) {
             (false, _) => Exit::Refused,
             (true, Addresses::These(_)) if !self.silent().is_empty() => Exit::NoLink,
             (true, _) => Exit::Done,
@@ -184,19 +247,21 @@ impl LineStop {
     }
 
     fn is_of_nodes(&self) -> bool {
-        self.units.iter().any(Identity::is_node)
+        self.stop.units.iter().any(|unit| unit.is_node)
     }
 
     /// The addresses that the stop was written to, where they were not asked for.
     fn written_to(&self) -> Vec<u8> {
-        let unit = self.units.first().filter(|_| !self.is_of_nodes());
-        unit.map_or_else(Vec::new, |unit| family::of(unit.family).stopped_addresses())
+        let unit = self.stop.units.first().filter(|_| !self.is_of_nodes());
+        let family = unit.and_then(StoppedUnit::family);
+        family.map_or_else(Vec::new, |family| family::of(family).stopped_addresses())
     }
 
     /// The addresses at which nobody answered: of those that were asked for, or of all that the stop was written to.
     fn silent(&self) -> Vec<u8> {
         let answered = |address: &u8| {
-            self.units.iter().any(|unit| unit.address == *address || unit.also_answers.contains(address))
+            let mut units = self.stop.units.iter();
+            units.any(|unit| unit.address == *address || unit.also_answers.contains(address))
         };
         let asked: Vec<u8> = match self.asked {
             Addresses::These(set) => set.iter().collect(),
@@ -205,26 +270,25 @@ impl LineStop {
         asked.into_iter().filter(|address| !answered(address)).collect()
     }
 
-    fn sentence(&self, unit: &UnitStop) -> String {
-        let identity = self.units.iter().find(|identity| identity.address == unit.address);
+    fn sentence(&self, unit: &StoppedUnit) -> String {
         let buffers = match unit.buffers_empty {
             Some(true) => ", buffers empty",
             Some(false) => ", buffers not empty",
             None => "",
         };
-        let one_motor = identity.is_some_and(|identity| identity.capabilities().motors == 1);
         format!(
             "{}: {}{buffers} ({:.2} ms to the wire).",
-            place(&self.units, unit.address),
-            if one_motor { "motor stopped" } else { "both motors stopped" },
-            self.latency.as_secs_f64() * 1e3
+            unit.place,
+            if unit.has_one_motor { "motor stopped" } else { "both motors stopped" },
+            self.stop.latency.as_secs_f64() * 1e3
         )
     }
 
     /// What is not plainly stopped, and what was not reached.
     fn warnings(&self) -> Vec<Message> {
-        let matters = matters(&self.report, &self.units).into_iter();
-        let mut lines: Vec<Message> = matters.map(|(_, text)| text).collect();
+        let matters = self.stop.matters.iter().cloned();
+        let mut lines: Vec<Message> =
+            matters.map(|sentence| CliStopMessage::Matter { sentence }.into()).collect();
         let silent = self.silent();
         match self.asked {
             Addresses::These(_) if !silent.is_empty() => {
@@ -233,6 +297,9 @@ impl LineStop {
             Addresses::These(_) => {}
             _ if self.is_of_nodes() => lines.push(CliStopMessage::OtherNodes.into()),
             _ if self.written_to().is_empty() => lines.push(CliStopMessage::Broadcast.into()),
+            _ if !silent.is_empty() && self.by.is_some() => {
+                lines.push(CliStopMessage::NotLookedFor { addresses: in_words(&silent) }.into());
+            }
             _ if !silent.is_empty() => {
                 lines.push(CliStopMessage::Silent { addresses: in_words(&silent) }.into());
             }
@@ -242,22 +309,24 @@ impl LineStop {
     }
 
     fn print(&self, out: &mut Output) -> Result<(), OutputError> {
-        let confirmed = self.report.units.iter().filter(|unit| unit.confirmed);
+        let confirmed = self.stop.units.iter().filter(|unit| unit.confirmed);
         out.lines(confirmed.map(|unit| self.sentence(unit)))?;
+        if let Some(holder) = &self.by {
+            say(CliLinkMessage::By { holder: holder.name() });
+        }
         self.warnings().into_iter().for_each(say);
         Ok(())
     }
 
     fn to_json(&self) -> Value {
-        let model = |address| self.units.iter().find(|unit| unit.address == address).map(Identity::title);
         let units: Vec<_> = self
-            .report
+            .stop
             .units
             .iter()
             .map(|unit| {
                 json!({
                     "address": unit.address,
-                    "model": model(unit.address),
+                    "model": unit.model,
                     "confirmed": unit.confirmed,
                     "buffers_empty": unit.buffers_empty,
                     "still_driven_by": unit.still_driven_by,
@@ -265,11 +334,15 @@ impl LineStop {
                 })
             })
             .collect();
-        json!({
-            "confirmed": self.report.confirmed(),
-            "latency_s": self.latency.as_secs_f64(),
+        let mut stopped = json!({
+            "confirmed": self.stop.is_confirmed(),
+            "latency_s": self.stop.latency.as_secs_f64(),
             "units": units,
             "no_answer_from": self.silent(),
-        })
+        });
+        if let Some(holder) = &self.by {
+            stopped["by"] = json!({ "program": holder.program, "process": holder.process });
+        }
+        stopped
     }
 }

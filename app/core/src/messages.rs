@@ -86,6 +86,7 @@ messages! {
     pub enum CoreStatusMessage {
         Because { why: Message } "{why}.",
         Stopping { reason: DisarmReason } "{reason}. The motors are being stopped.",
+        Stopped { reason: DisarmReason } "{reason}.",
     }
 }
 

@@ -2,6 +2,7 @@
 
 use brushwork_canopen::NodeId;
 use brushwork_core::messages::EndedMessage;
+use brushwork_link::device::DisarmReason;
 use brushwork_link::{Interruption, Message};
 use brushwork_values::{Motor, Sentences, messages};
 
@@ -111,6 +112,7 @@ messages! {
         LostArmedForever { what: Message } "{what} The screen was armed: make sure that the motors stand still.",
         LostWaiting { what: Message, waiting: Message } "{what} {waiting}",
         Stopped { milliseconds: f64 } "Stopped. The stop was on the wire after {milliseconds:.1} ms; duty 0 is confirmed.",
+        StoppedFromOutside { reason: DisarmReason, milliseconds: f64 } "{reason}. The stop was on the wire after {milliseconds:.1} ms; duty 0 is confirmed.",
     }
 }
 

@@ -22,21 +22,21 @@ const BRUSHWORK: &str = env!("CARGO_BIN_EXE_brushwork-for-tests");
 const SOON: Duration = Duration::from_secs(5);
 
 /// A controller that is served, and how it is reached.
-struct Served<M: Machine> {
+pub struct Served<M: Machine> {
     handle: SimHandle<M>,
-    target: String,
+    pub target: String,
     _folder: TempDir,
 }
 
 impl<M: Machine + 'static> Served<M> {
-    fn on_pty(machine: M, options: &str) -> Self {
+    pub fn on_pty(machine: M, options: &str) -> Self {
         let folder = tempfile::tempdir().expect("a temporary folder can be made");
         let link = folder.path().join("port");
         let target = format!("{}{options}", link.display());
         Self::at(machine, &Endpoint::Pty { link }, folder, |_| target)
     }
 
-    fn on_tcp(machine: M, options: &str) -> Self {
+    pub fn on_tcp(machine: M, options: &str) -> Self {
         let folder = tempfile::tempdir().expect("a temporary folder can be made");
         let endpoint = Endpoint::Tcp("127.0.0.1:0".parse().expect("it is an address"));
         Self::at(machine, &endpoint, folder, |address| {
@@ -51,7 +51,7 @@ impl<M: Machine + 'static> Served<M> {
     }
 
     /// Whether a bridge is driven, and the machine's time.
-    fn look(&self) -> (bool, Duration) {
+    pub fn look(&self) -> (bool, Duration) {
         let look = |machine: &mut M| {
             let view = machine.views().remove(0);
             let is_driven =
@@ -66,7 +66,7 @@ impl<M: Machine + 'static> Served<M> {
         Program::start(BRUSHWORK, &words.map(str::to_owned))
     }
 
-    fn driving(&self) -> Program {
+    pub fn driving(&self) -> Program {
         let program = self.drive("600");
         wait::until("a driven motor", || self.look().0, || "it stands".to_owned());
         program
@@ -91,12 +91,12 @@ impl<M: Machine + 'static> Served<M> {
     }
 }
 
-fn motion_mind() -> MotionMindBus {
+pub fn motion_mind() -> MotionMindBus {
     let unit = MotionMind::new(MotionMindConfig::new(Mode::Serial)).expect("the default motor is sound");
     MotionMindBus::new(vec![unit])
 }
 
-fn mcp() -> Bus {
+pub fn mcp() -> Bus {
     let unit = Controller::new(patient(Generation::Gen1)).expect("the preset is valid");
     Bus::single(unit, StreamIndex::Usb)
 }

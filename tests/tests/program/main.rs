@@ -28,6 +28,7 @@ mod settings;
 mod settings_as_read;
 mod settings_cut;
 mod slow_lines;
+mod stop_outside;
 mod targets;
 mod tune_command;
 mod tuning;

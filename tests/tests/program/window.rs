@@ -31,7 +31,7 @@ fn window_on(display: &str) -> Command {
 }
 
 /// A window that was opened on a controller, and what it looks like once its indicators are green.
-fn connected_window(screen: &Screen, controller: &OnPty) -> (Program, Picture) {
+pub fn connected_window(screen: &Screen, controller: &OnPty) -> (Program, Picture) {
     let mut command = window_on(screen.display());
     command.arg("--open").arg(controller.port());
     let window = Program::spawn(command);

@@ -17,6 +17,7 @@ use brushwork_link::{Clock, FamilyChoice, HiddenSettings, Message};
 
 use crate::guardian;
 use crate::keep::Store;
+use crate::stop::outside;
 
 pub mod bus;
 pub mod firmware;
@@ -91,6 +92,20 @@ pub fn open(
     if let Some(waiting) = loader_of(target, &ports) {
         return Err(waiting);
     }
+    let mut session = open_line(target, options, clock, running, &ports)?;
+    if let Some(hold) = outside::hold(target, session.device.stopper()) {
+        session.device.keep(Box::new(hold));
+    }
+    Ok(session)
+}
+
+fn open_line(
+    target: &ConnectTarget,
+    options: SessionOptions,
+    clock: Arc<dyn Clock>,
+    running: Option<Arc<Simulation>>,
+    ports: &[PortInfo],
+) -> Result<Session, SessionError> {
     let (transport, simulation) = connect(target, running)?;
     if let Some((node, form)) = on_can(target, simulation.as_deref()) {
         let options =
@@ -100,7 +115,7 @@ pub fn open(
     let named = simulation.as_deref().map_or_else(|| target.family(), Simulation::family);
     let options = SessionOptions {
         family: match named {
-            FamilyChoice::AUTO => settled(target, options.family, &ports),
+            FamilyChoice::AUTO => settled(target, options.family, ports),
             named => named,
         },
         ..options

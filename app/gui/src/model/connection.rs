@@ -294,6 +294,9 @@ impl Connection {
     /// end of the link.
     pub fn take(&mut self, event: Event) -> Vec<Effect> {
         let changes_ram = self.changes_ram(&event);
+        if matches!(&event, Event::Stopped(report) if report.from_outside) {
+            self.tune.abort("`brushwork stop` was given in another program");
+        }
         self.history.note(&event);
         self.traffic.note(&event);
         if changes_ram {

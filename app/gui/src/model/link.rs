@@ -324,12 +324,14 @@ impl LinkView {
     /// What became of a stop, in one sentence per thing the user has to know.
     fn stopped(&self, report: &StopReport) -> Vec<Effect> {
         let mut matters = matters(report, &self.units);
+        let reason = DisarmReason::StopFromOutside;
         if matters.is_empty() {
             let milliseconds = report.latency().as_secs_f64() * 1000.0;
-            return vec![
-                Effect::AtRest,
-                Effect::say(Gravity::Note, LinkStatusMessage::Stopped { milliseconds }),
-            ];
+            let text = match report.from_outside {
+                true => LinkStatusMessage::StoppedFromOutside { reason: reason.clone(), milliseconds }.into(),
+                false => LinkStatusMessage::Stopped { milliseconds }.into(),
+            };
+            return vec![Effect::AtRest, Effect::Say(Gravity::Note, text)];
         }
         // The message line shows what was said last: the gravest.
         matters.sort_by_key(|(matter, _)| Reverse(*matter));
@@ -337,7 +339,10 @@ impl LinkView {
             Matter::NotConfirmed | Matter::Failed => Effect::say(Gravity::Error, text),
             Matter::StillDriven => Effect::say(Gravity::Warning, text),
         });
-        std::iter::once(Effect::AtRest).chain(said).collect()
+        let by = report
+            .from_outside
+            .then(|| Effect::say(Gravity::Note, CoreStatusMessage::Stopped { reason: reason.clone() }));
+        std::iter::once(Effect::AtRest).chain(by).chain(said).collect()
     }
 }
 

@@ -143,6 +143,8 @@ pub enum DisarmReason {
     Asked,
     /// Stop was pressed.
     Stop,
+    /// Another program has asked for a stop.
+    StopFromOutside,
     /// Nobody renewed the motion in time.
     DeadMan,
     /// The controller reports a fault.
@@ -201,6 +203,7 @@ impl fmt::Display for DisarmReason {
         match self {
             Self::Asked => f.write_str("Disarmed"),
             Self::Stop => f.write_str("Disarmed: Stop was pressed"),
+            Self::StopFromOutside => f.write_str("Stopped by `brushwork stop`, from another program"),
             Self::DeadMan => f.write_str(
                 "Disarmed: this computer answered late: the program did not renew the motion within 250 ms",
             ),

@@ -2,9 +2,11 @@
 
 use super::event::Event;
 use super::job::{Job, JobTicket};
+use super::options::Addresses;
 use super::request::{Request, RequestRefused};
-use super::signals::Signals;
+use super::signals::{OutsideAnswer, Signals};
 use crossbeam_channel::{Receiver, Sender, TrySendError};
+use std::any::Any;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
@@ -27,6 +29,9 @@ pub(super) struct Envelope {
     pub disarms: u64,
 }
 
+/// What has to live as long as a link is open.
+pub type Kept = Box<dyn Any + Send + Sync>;
+
 /// A device thread's handle. Dropping it closes the link: motors that this program set in motion are stopped first.
 pub struct DeviceHandle {
     requests: Sender<Envelope>,
@@ -34,6 +39,7 @@ pub struct DeviceHandle {
     signals: Arc<Signals>,
     waker: Waker,
     ended: Option<Receiver<()>>,
+    kept: Option<Kept>,
 }
 
 impl DeviceHandle {
@@ -43,7 +49,7 @@ impl DeviceHandle {
         signals: Arc<Signals>,
         waker: Waker,
     ) -> Self {
-        Self { requests, events, signals, waker, ended: None }
+        Self { requests, events, signals, waker, ended: None, kept: None }
     }
 
     /// The channel that ends with the thread; without it nobody is waited for.
@@ -83,6 +89,11 @@ impl DeviceHandle {
     #[must_use]
     pub fn stopper(&self) -> Stopper {
         Stopper { signals: self.signals.clone() }
+    }
+
+    /// Keeps something until the link is closed.
+    pub fn keep(&mut self, kept: Kept) {
+        self.kept = Some(kept);
     }
 
     /// The events, to be drained at least once per frame.
@@ -141,6 +152,13 @@ impl Stopper {
     /// As [`DeviceHandle::stop_all`].
     pub fn stop_all(&self) {
         self.signals.stop();
+    }
+
+    /// Stops all motors of the link, and those of further units on its line, in the name of another program. What became of it comes by the
+    /// channel, which is closed without a word where the link ends before.
+    #[must_use]
+    pub fn stop_from_outside(&self, addresses: Addresses) -> Receiver<OutsideAnswer> {
+        self.signals.stop_from_outside(addresses)
     }
 
     /// As [`DeviceHandle::renew`].

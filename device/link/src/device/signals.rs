@@ -3,6 +3,9 @@
 //! All of it is atomic, so that a window, a signal handler and a frozen queue make no difference. [`Guard`] is the
 //! thread's own view of it: what may break into an exchange at a given moment.
 
+use super::identity::Identity;
+use super::options::Addresses;
+use super::stop::StopReport;
 use crate::clock::{Clock, nanoseconds};
 use crate::exchange::{Interruption, Watch};
 use crate::guardian::LineGuard;
@@ -31,7 +34,21 @@ pub struct Signals {
     wake: Sender<()>,
     /// Who stops the motors when this program dies.
     guard: Mutex<Option<Box<dyn LineGuard>>>,
+    /// Stops that another program has asked for, until they are answered; none any more when the link has ended.
+    from_outside: Mutex<Option<Vec<OutsideStop>>>,
 }
+
+/// A stop that another program has asked for.
+struct OutsideStop {
+    addresses: Addresses,
+    answer: Sender<OutsideAnswer>,
+}
+
+/// What another program is told of a stop that it has asked for: who is known on the line, and what became of the stop.
+pub type OutsideAnswer = (Vec<Identity>, StopReport);
+
+/// Other programs that may wait for their answers at the same time.
+const OUTSIDE_STOPS: usize = 16;
 
 impl Signals {
     /// Flags at rest, and the channel that wakes an idle thread.
@@ -47,6 +64,7 @@ impl Signals {
             closing: AtomicBool::new(false),
             wake,
             guard: Mutex::default(),
+            from_outside: Mutex::new(Some(Vec::new())),
         };
         (Arc::new(signals), woken)
     }
@@ -56,6 +74,42 @@ impl Signals {
         self.stopped_at.store(nanoseconds(self.clock.now()), Ordering::SeqCst);
         self.stops.fetch_add(1, Ordering::SeqCst);
         self.wake();
+    }
+
+    /// Asks for a stop in the name of another program, to these units beside those of the link. Its answer comes once the stop is served; the
+    /// channel is closed without one where the link has ended.
+    pub fn stop_from_outside(&self, addresses: Addresses) -> Receiver<OutsideAnswer> {
+        let (answer, told) = bounded(1);
+        let mut waiting = self.from_outside.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(waiting) = waiting.as_mut() {
+            waiting.truncate(OUTSIDE_STOPS - 1);
+            waiting.push(OutsideStop { addresses, answer });
+            // Under the lock: whoever answers sees the stop and who waits for it together.
+            self.stop();
+        }
+        told
+    }
+
+    /// To whom a stop is to be written in the name of other programs that wait for one, a set each.
+    pub fn outside_addresses(&self) -> Vec<Addresses> {
+        let waiting = self.from_outside.lock().unwrap_or_else(PoisonError::into_inner);
+        waiting.iter().flatten().map(|stop| stop.addresses).collect()
+    }
+
+    /// Answers all who wait, unless a later stop waits to be served. `stops` were served by this one.
+    pub fn answer_outside(&self, stops: u64, answer: impl Fn() -> OutsideAnswer) {
+        let mut waiting = self.from_outside.lock().unwrap_or_else(PoisonError::into_inner);
+        if self.stops() == stops {
+            for stop in waiting.iter_mut().flat_map(std::mem::take) {
+                // It may have gone away.
+                let _ = stop.answer.try_send(answer());
+            }
+        }
+    }
+
+    /// The link has ended, and nobody is answered any more.
+    pub fn end_outside(&self) {
+        *self.from_outside.lock().unwrap_or_else(PoisonError::into_inner) = None;
     }
 
     /// Renews motion. What has died is not revived: after a pause of the whole program (it was halted, the computer slept)
@@ -208,6 +262,11 @@ impl Guard {
     /// While set, only a new Stop breaks in: the motors are being stopped.
     pub fn set_only_stop(&self, only_stop: bool) {
         self.only_stop.set(only_stop);
+    }
+
+    /// How many stops have been served.
+    pub fn stops_served(&self) -> u64 {
+        self.stops_served.get()
     }
 
     /// Whether a stop waits to be served.

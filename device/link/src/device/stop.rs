@@ -69,6 +69,8 @@ pub struct StopReport {
     pub ended_at: Duration,
     /// One for each unit of the link.
     pub units: Vec<UnitStop>,
+    /// Whether another program has asked for it.
+    pub from_outside: bool,
 }
 
 /// What one unit made of it.

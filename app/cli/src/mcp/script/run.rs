@@ -44,7 +44,10 @@ fn run(controller: &Controller<'_>, duration: Option<Duration>) -> Result<Exit, 
         match controller.next_event()? {
             Some(Event::Failure(failure)) => return Err(Exit::Refused.saying(failure)),
             Some(Event::Disarmed(reason)) => {
-                say(CliScriptMessage::Stopping { reason: reason.to_string() });
+                // That of another program is said once it has come to its end.
+                if reason != DisarmReason::StopFromOutside {
+                    say(CliScriptMessage::Stopping { reason: reason.to_string() });
+                }
                 return Err(if reason == DisarmReason::LinkLost { Exit::NoLink } else { Exit::Refused });
             }
             _ => {}

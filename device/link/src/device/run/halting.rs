@@ -46,7 +46,12 @@ impl DeviceLoop {
         let stops = self.signals.stops();
         let now = self.clock.now();
         let requested_at = if self.guard.stop_waits() { self.signals.stopped_at() } else { now };
-        let bytes = self.stop_bytes(reason);
+        let mut bytes = self.stop_bytes(reason);
+        if *reason == DisarmReason::Stop {
+            // Another program may mean more units than this one has looked for.
+            let asked = self.signals.outside_addresses().into_iter();
+            bytes = asked.map(|asked| self.family.stop_bytes(asked)).fold(bytes, StopBytes::with);
+        }
         let written_at = if bytes.is_empty() { now } else { self.exchange.write_stop(&bytes)? };
         self.guard.stop_served(stops);
         Ok(Written { requested_at, written_at })
@@ -57,7 +62,8 @@ impl DeviceLoop {
         let concerned = self.concerned(&reason);
         let everything = reason == DisarmReason::Stop;
         let all_scripts = everything;
-        self.disarm(reason);
+        let from_outside = everything && !self.signals.outside_addresses().is_empty();
+        self.disarm(if from_outside { DisarmReason::StopFromOutside } else { reason });
         self.restart_sweep();
         self.guard.set_only_stop(true);
         let mut units = Vec::new();
@@ -80,8 +86,14 @@ impl DeviceLoop {
             written_at: written.written_at,
             ended_at: self.clock.now(),
             units,
+            from_outside,
         };
         let confirmed = report.confirmed();
+        // Before the units are known nobody can tell what became of it; it is served once more then.
+        if everything && self.phase == Phase::Running {
+            let units = || self.units.iter().map(|unit| unit.controller.identity().clone()).collect();
+            self.signals.answer_outside(self.guard.stops_served(), || (units(), report.clone()));
+        }
         self.outbox.send(Event::Stopped(report));
         confirmed
     }
@@ -182,6 +194,7 @@ impl DeviceLoop {
                 written_at,
                 ended_at,
                 units,
+                from_outside: false,
             }));
         }
         let silent_since = again.since.max(self.exchange.last_reply_at());

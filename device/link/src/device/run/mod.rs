@@ -238,6 +238,7 @@ impl DeviceLoop {
         self.guard.motion_ends();
         self.tend_guard();
         self.dismiss_guard();
+        self.signals.end_outside();
         self.phase = Phase::Ended;
         self.tell_capabilities();
         self.outbox.send(last);

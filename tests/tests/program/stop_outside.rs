@@ -1,0 +1,199 @@
+//! `brushwork stop` while another brushwork holds the line: that program stops it, and both say so. What is off is seen in the simulator.
+#![cfg(unix)]
+
+use std::os::unix::fs::symlink;
+use std::path::Path;
+use std::time::Duration;
+
+use brushwork_mcp_wire::packet_serial::Generation;
+use brushwork_plant::machine::Machine;
+use brushwork_tests::program::{Ending, Program};
+use brushwork_tests::simulated::{OnPty, is_driven};
+use brushwork_tests::wait::{self, LIMIT};
+
+use crate::guardian::{Served, mcp, motion_mind};
+
+const BRUSHWORK: &str = env!("CARGO_BIN_EXE_brushwork-for-tests");
+const DONE: i32 = 0;
+const NO_LINK: i32 = 3;
+const REFUSED: i32 = 4;
+/// What a program says that was stopped.
+const STOPPED: &str = "Stopped by `brushwork stop`, from another program.";
+
+fn stop(target: &str, more: &[&str]) -> Ending {
+    Program::start(BRUSHWORK, &[&["stop", "-c", target][..], more].concat()).finish(LIMIT)
+}
+
+/// The motor is off when that is told, but for the ramp to rest. The controller's own time-out is a minute, or none.
+fn assert_off<M: Machine>(served: &Served<M>) {
+    const RAMP: Duration = Duration::from_millis(100);
+    let (_, told_at) = served.look();
+    let off = || Some(served.look()).filter(|(is_driven, _)| !is_driven);
+    let (_, off_at) = wait::until_some("a motor that is off", off, || "it is driven".to_owned());
+    assert!(off_at < told_at + RAMP, "{:?}", off_at.saturating_sub(told_at));
+}
+
+/// The holder says who stopped it, and ends as something does that a safety rule ended.
+fn assert_was_told(holder: Program) {
+    let ending = holder.finish(LIMIT);
+    assert_eq!(ending.status.code(), Some(REFUSED), "{ending:?}");
+    assert_eq!(ending.stderr.iter().filter(|line| *line == STOPPED).count(), 1, "{ending:?}");
+}
+
+/// Whoever stopped says what stands now, and by whom.
+fn assert_tells(ending: &Ending, unit: &str, holder: &Program, command: &str) {
+    assert_eq!(ending.status.code(), Some(DONE), "{ending:?}");
+    assert!(ending.stdout[0].starts_with(unit), "{ending:?}");
+    let by = format!(
+        "The line is held by brushwork {command} (process {}), which was asked to stop it.",
+        holder.id()
+    );
+    assert_eq!(ending.stderr[0], by);
+}
+
+#[test]
+fn a_drive_is_stopped_from_outside_on_either_family_over_serial_and_tcp() {
+    let stopped = "0x80: both motors stopped";
+    let served = Served::on_pty(mcp(), ",stream=usb");
+    let drive = served.driving();
+    let ending = stop(&served.target, &[]);
+    assert_off(&served);
+    assert_tells(&ending, stopped, &drive, "drive");
+    assert_was_told(drive);
+
+    let served = Served::on_tcp(mcp(), ",stream=usb");
+    let drive = served.driving();
+    // Another name of the same place.
+    let ending = stop(&served.target.replace("127.0.0.1", "localhost"), &["--address", "0x80"]);
+    assert_off(&served);
+    assert_tells(&ending, stopped, &drive, "drive");
+    assert_was_told(drive);
+
+    let served = Served::on_pty(motion_mind(), ",family=motion-mind");
+    let drive = served.driving();
+    let ending = stop(&served.target, &[]);
+    assert_off(&served);
+    assert_tells(&ending, "unit 1: motor stopped", &drive, "drive");
+    assert_was_told(drive);
+}
+
+#[test]
+fn a_link_to_the_port_is_the_port_and_json_says_by_whom() {
+    let controller = OnPty::patient(Generation::Gen1);
+    let drive = driving(&controller.port(), &controller);
+    let link = controller.port().with_file_name("usb-Basicmicro-if00");
+    symlink(controller.port(), &link).expect("the folder can be written to");
+    let ending = stop(&link.display().to_string(), &["--json"]);
+    controller.wait_until_off().assert_by_command();
+    let told: serde_json::Value = serde_json::from_str(&ending.stdout.join("\n")).expect("JSON");
+    assert_eq!((&told["confirmed"], &told["by"]["process"]), (&true.into(), &drive.id().into()), "{told}");
+    assert_eq!(told["units"][0]["address"], 0x80);
+    assert_was_told(drive);
+}
+
+fn driving(port: &Path, controller: &OnPty) -> Program {
+    let target = port.display().to_string();
+    let words = ["drive", "-c", &target, "--motor", "1", "--duty", "40", "--for", "600"];
+    let drive = Program::start(BRUSHWORK, &words);
+    controller.wait_until("a driven motor", is_driven);
+    drive
+}
+
+/// A drive knows one unit of a line; whoever stops the line means all of them.
+#[test]
+fn units_that_the_other_program_has_not_looked_for_are_stopped_too() {
+    let controller = OnPty::line(&[0x80, 0x83]);
+    controller.set_all_going();
+    let target = format!("{},stream=ttl1", controller.port().display());
+    let words = ["drive", "-c", &target, "--address", "0x80", "--motor", "1", "--duty", "40", "--for", "600"];
+    let mut drive = Program::start(BRUSHWORK, &words);
+    drive.next_line(LIMIT);
+    let ending = stop(&target, &[]);
+    wait::until(
+        "motors off",
+        || controller.driven() == [false, false],
+        || format!("{:?}", controller.driven()),
+    );
+    assert_eq!(ending.status.code(), Some(DONE), "{ending:?}");
+    let others =
+        "The stop was written to 0x81 to 0x87 too, where that program may not have looked for units.";
+    assert!(ending.stderr.iter().any(|line| line == others), "{ending:?}");
+    assert_was_told(drive);
+}
+
+#[test]
+fn a_tuning_run_is_stopped_from_outside_and_puts_back_what_it_changed() {
+    let controller = OnPty::start(Generation::Gen2);
+    let before = controller.look(|unit| unit.settings().motors[0].motion);
+    let target = format!("{},stream=usb", controller.port().display());
+    let tune = Program::start(BRUSHWORK, &["tune", "velocity", "-c", &target, "--dry-run"]);
+    controller.wait_until("a driven motor", is_driven);
+    let ending = stop(&target, &[]);
+    assert_tells(&ending, "0x80: both motors stopped", &tune, "tune");
+    let ending = tune.finish(LIMIT);
+    assert_eq!(ending.status.code(), Some(REFUSED), "{ending:?}");
+    assert!(ending.stderr.iter().any(|line| line == STOPPED), "{ending:?}");
+    assert!(!controller.look(is_driven));
+    assert_eq!(controller.look(|unit| unit.settings().motors[0].motion), before, "{ending:?}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_window_is_stopped_from_outside_and_stays_open() {
+    use brushwork_mcp_wire::packet_serial::{Address, Request};
+    use brushwork_tests::foreign::is_left_out;
+    use brushwork_tests::screen::Screen;
+    if is_left_out("xvfb") {
+        return;
+    }
+    let controller = OnPty::patient(Generation::Gen1);
+    let screen = Screen::start();
+    let (mut window, _) = crate::window::connected_window(&screen, &controller);
+    let duty = Request::new(Address::ALL[0], 34, &[16_384, -16_384]);
+    controller.receive(duty.encode(Generation::Gen1).expect("command 34 has two arguments"));
+    controller.wait_until("driven motors", is_driven);
+    let ending = stop(&controller.port().display().to_string(), &[]);
+    controller.wait_until_off().assert_by_command();
+    assert_eq!(ending.status.code(), Some(DONE), "{ending:?}");
+    let by = format!(
+        "The line is held by the window of brushwork (process {}), which was asked to stop it.",
+        window.id()
+    );
+    assert_eq!(ending.stderr[0], by);
+    assert!(window.is_running());
+}
+
+/// One that moves nothing is not ended by its guardian: there is none.
+#[test]
+fn a_program_that_was_halted_at_rest_is_told_as_that() {
+    let controller = OnPty::start(Generation::Gen1);
+    let target = controller.port().display().to_string();
+    let mut status = Program::start(BRUSHWORK, &["status", "-c", &target, "--watch"]);
+    status.next_line(LIMIT);
+    status.signal("STOP");
+    let ending = stop(&target, &[]);
+    status.signal("CONT");
+    assert_eq!(ending.status.code(), Some(NO_LINK), "{ending:?}");
+    let halted = format!("(process {}), which was halted by a signal and does not answer.", status.id());
+    assert!(ending.stderr[0].contains(&halted), "{ending:?}");
+}
+
+/// One that drives is ended by its guardian, and the line is stopped and asked by whoever wanted it stopped.
+#[test]
+fn a_program_that_was_halted_or_killed_while_it_drove_hands_the_line_over() {
+    let served = Served::on_pty(motion_mind(), ",family=motion-mind");
+    for signal in ["STOP", "KILL"] {
+        let drive = served.driving();
+        drive.signal(signal);
+        let ending = stop(&served.target, &[]);
+        assert_off(&served);
+        assert_eq!(ending.status.code(), Some(DONE), "{ending:?}");
+        assert!(ending.stdout[0].starts_with("unit 1: motor stopped"), "{ending:?}");
+        assert!(ending.stderr.iter().all(|line| !line.contains("held by")), "{ending:?}");
+        let mut drive = drive;
+        wait::until("its end", || !drive.is_running(), || "it is there".to_owned());
+    }
+    // Nothing is left of either.
+    let again = stop(&served.target, &[]);
+    assert!(again.status.success() && again.stderr.iter().all(|line| !line.contains("held by")), "{again:?}");
+}
