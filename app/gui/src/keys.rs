@@ -1,7 +1,7 @@
 //! The stop keys, taken before any widget sees them.
 //!
-//! Space and Esc stop from every screen. Space is taken out of the input altogether, so that it never presses the
-//! button that has focus (Enter does that); only a field for words keeps it. Esc also goes on to whatever it closes.
+//! Esc stops from everywhere, whatever has the keyboard, and goes on to whatever it closes. Space stops too, and is taken out of the input
+//! altogether, so that it never presses the button that has focus (Enter does that); only a field for words keeps it.
 
 use egui::{Context, Event, Key};
 
@@ -12,6 +12,11 @@ use super::widgets::text_field;
 pub enum StopKey {
     Space,
     Escape,
+}
+
+/// The keys that stop now, in words: where a space is a letter it is not one of them.
+pub fn stop_words(ctx: &Context) -> &'static str {
+    if text_field::takes_space(ctx) { "Esc" } else { "Space or Esc" }
 }
 
 /// Looks for a stop key and takes Space out of the input. Called before anything is drawn.

@@ -81,7 +81,7 @@ messages! {
         NoLineNumber { text: String } "“{text}” is no line number.",
         Renamed { count: usize } "Renamed in {count} places.",
         FileIs { what: &'static str, path: String } "{what}: {path}.",
-        Armed { scope: String } "Armed for {scope}. Space or Esc stops.",
+        Armed { scope: String } "Armed for {scope}. Esc stops.",
         Disconnected "Disconnected.",
         Copied { count: usize } "Copied {count} transactions.",
         NotTuned { motor: Motor, why: Message } "{motor} was not tuned: {why}",

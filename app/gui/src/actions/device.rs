@@ -13,7 +13,7 @@ use crate::tune::{Loop, TuneAction};
 
 pub(super) const ACTIONS: &[Action] = &[
     entry!(Device 0 "device.stop", "Stop All", "Stops all motors of every open link, at once.",
-        Keys::Elsewhere("Space or Esc"), always, |_| Command::Stop),
+        Keys::Stop, always, |_| Command::Stop),
     entry!(Device 0 "device.arm", "Arm This Screen", "Lets the open screen move motors, or disarms it and stops them.",
         ctrl_shift(Key::A), can_arm, arm_or_disarm, on |model| model.front.link.arming != Arming::Disarmed),
     entry!(Device 1 "device.connect", "Connect to the Chosen Device", "Opens a link to the device that is chosen in the list, or brings it to the front.",

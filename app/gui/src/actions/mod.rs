@@ -11,6 +11,7 @@ use std::sync::OnceLock;
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 use super::command::{Command, Commands};
+use super::keys::stop_words;
 use super::mcl::has_keyboard;
 use super::model::Model;
 use super::model::screen::Screen;
@@ -126,8 +127,10 @@ pub enum Keys {
     OnMcl(KeyboardShortcut),
     /// Calls it while a program's text has the keyboard: fields for words use the same keys.
     InText(KeyboardShortcut),
-    /// Is taken elsewhere (by a text field, by the stop keys) and only listed here.
+    /// Is taken elsewhere, by a text field, and only listed here.
     Elsewhere(&'static str),
+    /// The keys that stop, which are taken before anything else and only listed here.
+    Stop,
 }
 
 /// `Err` says in a sentence why an action cannot be done now.
@@ -176,6 +179,7 @@ impl Action {
                 ctx.format_shortcut(&shortcut)
             }
             Keys::Elsewhere(text) => text.to_owned(),
+            Keys::Stop => stop_words(ctx).to_owned(),
         }
     }
 }
@@ -198,7 +202,8 @@ pub fn shortcuts(ctx: &Context, model: &mut Model) -> Commands {
                     | Keys::Shortcut(_)
                     | Keys::OnMcl(_)
                     | Keys::InText(_)
-                    | Keys::Elsewhere(_) => continue,
+                    | Keys::Elsewhere(_)
+                    | Keys::Stop => continue,
                 };
                 if modifiers(shortcut) == count && ctx.input_mut(|input| input.consume_shortcut(&shortcut)) {
                     pressed.push(action);

@@ -10,6 +10,7 @@ use super::title_ui;
 use crate::command::{Command, Commands};
 use crate::family::{Ability, Family};
 use crate::graph::panel;
+use crate::keys::stop_words;
 use crate::model::{Arming, Direction, IndicatorState, LinkView, Model, Setpoints};
 use crate::theme::Palette;
 use crate::tune::guide::guide_ui;
@@ -26,12 +27,11 @@ const LEAST_GUIDE_HEIGHT: f32 = 320.0;
 const ROOM_FOR_DRAWER: f32 = 520.0;
 const BAR_WIDTH: f32 = 10.0;
 
-const RISK: &str = "While armed, a slider moves its motor at once. Keep clear. Space or Esc stops both.";
-const RISK_OF_ONE: &str =
-    "While armed, the slider moves the motor at once. Keep clear. Space or Esc stops it.";
+const RISK: &str = "While armed, a slider moves its motor at once. Keep clear.";
+const RISK_OF_ONE: &str = "While armed, the slider moves the motor at once. Keep clear.";
 /// The same where a run is started instead.
-const RISK_OF_RUN: &str = "While armed, starting the test turns the motor at up to full speed. Keep hands and cables \
-                           clear. Space or Esc stops both motors.";
+const RISK_OF_RUN: &str =
+    "While armed, starting the test turns the motor at up to full speed. Keep hands and cables clear.";
 
 /// What a screen that drives is made of: its head, its arm switch, its sliders in `controls_ui`, the drawer and the graph.
 pub fn drive_ui(
@@ -95,11 +95,12 @@ pub fn arm_ui(ui: &mut Ui, scope: ArmScope, link: &LinkView, family: &dyn Family
                 commands.push(if armed { Command::Disarm } else { Command::Arm(scope) });
             }
             ui.vertical(|ui| {
-                ui.label(match scope {
-                    ArmScope::ClampTest => RISK_OF_RUN,
-                    _ if family.motors(link.identity()).len() == 1 => RISK_OF_ONE,
-                    _ => RISK,
-                });
+                let (risk, what) = match scope {
+                    ArmScope::ClampTest => (RISK_OF_RUN, "both motors"),
+                    _ if family.motors(link.identity()).len() == 1 => (RISK_OF_ONE, "it"),
+                    _ => (RISK, "both"),
+                };
+                ui.label(format!("{risk} {} stops {what}.", stop_words(ui.ctx())));
                 let color = palette.weak_text;
                 ui.label(RichText::new(fallback_text(link.arming)).small().color(color));
             });

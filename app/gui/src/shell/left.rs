@@ -4,7 +4,7 @@ use egui::{Align, Button, Label, Layout, Panel, RichText, Role, ScrollArea, Ui, 
 
 use super::devices::devices_ui;
 use crate::command::{Command, Commands};
-use crate::model::Model;
+use crate::model::{Connection, Model};
 use crate::theme::Palette;
 use crate::widgets::{heading_ui, stop};
 
@@ -14,7 +14,7 @@ pub fn left_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         |ui| {
             script_ui(ui, model);
             ui.add_space(6.0);
-            let response = stop::stop_ui(ui, model.is_connected());
+            let response = stop::stop_ui(ui, model.connections().any(Connection::is_connected));
             if stop::pressed(&response) {
                 commands.push(Command::Stop);
             }

@@ -84,7 +84,7 @@ fn progress_ui(ui: &mut Ui, tuning: &Tuning, which: Loop, commands: &mut Command
     ui.horizontal(|ui| {
         ui.heading(format!("Tuning {}", tuning.motor(which)));
         let stop = Button::new(RichText::new("Stop the run").strong());
-        let hint = "Stops at once and puts the old gains back. Space and Esc do the same.";
+        let hint = "Stops at once and puts the old gains back. Esc does the same.";
         if ui.add(stop).on_hover_text(hint).clicked() {
             commands.push(Command::Tune(TuneAction::Cancel));
         }

@@ -2,16 +2,19 @@
 
 use egui::{Align2, FontId, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
 
+use crate::keys::stop_words;
 use crate::theme::Palette;
 
 /// Height in points: big enough to hit in a hurry.
 const HEIGHT: f32 = 64.0;
 
-/// Fills the width. `connected` only changes how it looks: pressing it is never refused.
+/// Fills the width. `connected` only changes how it looks: pressing it is never refused. It names the keys that stop at this moment.
 pub fn stop_ui(ui: &mut Ui, connected: bool) -> Response {
     let palette = Palette::of(ui);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Stop All"));
+    let keys = stop_words(ui.ctx());
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_keyboard_shortcut(keys));
     let (fill, text) =
         if connected { (palette.stop, palette.on_stop) } else { (palette.raised, palette.weak_text) };
     let fill = if response.is_pointer_button_down_on() { fill.gamma_multiply(0.8) } else { fill };
@@ -34,7 +37,7 @@ pub fn stop_ui(ui: &mut Ui, connected: bool) -> Response {
     painter.text(
         rect.center() + vec2(0.0, 16.0),
         Align2::CENTER_CENTER,
-        "Space or Esc",
+        keys,
         FontId::proportional(11.5),
         text,
     );

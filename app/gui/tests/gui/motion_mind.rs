@@ -356,6 +356,28 @@ fn the_terminal_decodes_sends_and_shows_the_answer() {
     assert!(bench.sees_part("Answer: PTERM 6100"));
 }
 
+/// The keyboard stays in the field: a space in the next line is no stop.
+#[test]
+fn the_terminal_takes_the_next_line_after_enter() {
+    let mut bench = connected(Mode::SerialPid);
+    bench.press("Terminal");
+    type_line(&mut bench, "R01 04");
+    bench.key(Key::Enter);
+    bench.pass_ms(1000);
+    let stops = |bench: &mut Bench| bench.said().iter().filter(|said| said.starts_with("Stopped.")).count();
+    let before = stops(&mut bench);
+    bench.harness.event(egui::Event::Text("R01".to_owned()));
+    bench.harness.key_press(Key::Space);
+    bench.harness.event(egui::Event::Text(" ".to_owned()));
+    bench.harness.event(egui::Event::Text("05".to_owned()));
+    bench.pass_ms(300);
+    assert_eq!(bench.model().front.mind_mut().terminal.typed, "R01 05");
+    bench.key(Key::Enter);
+    bench.pass_ms(1000);
+    assert_eq!(bench.model().front.mind_mut().terminal.entries.len(), 2);
+    assert_eq!(stops(&mut bench), before);
+}
+
 #[test]
 fn the_terminal_shows_both_directions_byte_for_byte_and_in_words() {
     for (protocol, sent, back) in [

@@ -2,14 +2,14 @@
 
 use std::time::Duration;
 
-use crate::support::bench::Bench;
+use crate::support::bench::{Bench, SECOND};
 use brushwork_gui::model::link::Arming;
 use brushwork_link::Clock as _;
 use brushwork_plant::world::WorldAction;
 use brushwork_values::Motor;
-use egui::Key;
 use egui::accesskit::Role;
-use egui_kittest::kittest::Queryable as _;
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
 /// A window that drives motor 1 at 50 % and motor 2 at -30 %.
 fn driving() -> Bench {
@@ -127,6 +127,113 @@ fn a_space_typed_into_a_field_for_words_is_a_letter_and_escape_still_stops() {
     bench.harness.event(egui::Event::Text("b".to_owned()));
     bench.pass_ms(200);
     assert_eq!(bench.model().devices.typed, "a b");
+}
+
+/// The keys that the button names.
+fn keys_of_stop_all(bench: &Bench) -> Option<String> {
+    let button = bench.harness.get_by_role_and_label(Role::Button, "Stop All");
+    button.accesskit_node().data().keyboard_shortcut().map(str::to_owned)
+}
+
+/// Whether the button is red at its edge, where no letters are.
+fn stop_all_is_red(bench: &mut Bench) -> bool {
+    let corner = bench.harness.get_by_role_and_label(Role::Button, "Stop All").rect().left_top();
+    let picture = bench.harness.render().expect("a picture");
+    let [red, green, blue, _] = picture.get_pixel(corner.x as u32 + 8, corner.y as u32 + 8).0;
+    red > 2 * green.max(blue)
+}
+
+/// What has the keyboard is said to leave Space a letter or not, and that is what it is; Esc stops either way.
+fn assert_keys_are_as_said(bench: &mut Bench, where_: &str, is_for_words: bool) {
+    let said = if is_for_words { "Esc" } else { "Space or Esc" };
+    assert_eq!(keys_of_stop_all(bench).as_deref(), Some(said), "{where_}");
+    let stops = stops_seen(bench);
+    bench.harness.key_press(Key::Space);
+    bench.harness.event(egui::Event::Text(" ".to_owned()));
+    bench.pass_ms(300);
+    let by_space = usize::from(!is_for_words);
+    assert_eq!(stops_seen(bench), stops + by_space, "{where_}: Space");
+    bench.key(Key::Escape);
+    bench.pass_ms(300);
+    assert_eq!(stops_seen(bench), stops + by_space + 1, "{where_}: Esc");
+}
+
+#[test]
+fn escape_stops_wherever_the_keyboard_is_and_the_button_names_the_keys_that_do() {
+    let mut bench = Bench::new();
+    bench.connect();
+    assert_keys_are_as_said(&mut bench, "nowhere", false);
+    bench.press("PWM Settings");
+    bench.focus_label("M1 duty exact");
+    assert_keys_are_as_said(&mut bench, "a number field", false);
+    bench.harness.get_by_role_and_label(Role::TextInput, "Other device").focus();
+    bench.pass_ms(200);
+    assert_keys_are_as_said(&mut bench, "a field for words", true);
+    bench.key_with(Modifiers { shift: true, ..Modifiers::COMMAND }, Key::P);
+    bench.pass_ms(200);
+    assert!(bench.sees("Command"));
+    assert_keys_are_as_said(&mut bench, "the palette", true);
+    assert!(!bench.sees("Command"), "Esc has closed it, too");
+    bench.key(Key::F10);
+    bench.pass_ms(3000);
+    assert!(bench.sees("Back"), "a dialog is open: {:?}", bench.said());
+    assert_keys_are_as_said(&mut bench, "a dialog", false);
+    assert!(!bench.sees("Back"), "Esc has closed it, too");
+    bench.press("MCL Editor");
+    bench.pass_ms(200);
+    bench.harness.event(egui::Event::Text("speed".to_owned()));
+    bench.pass_ms(200);
+    assert_keys_are_as_said(&mut bench, "the editor", true);
+    bench.harness.get_by_role_and_label(Role::MultilineTextInput, "Program Untitled 1").focus();
+    bench.key(Key::Home);
+    bench.key_with(Modifiers { shift: true, ..Modifiers::COMMAND }, Key::R);
+    bench.pass_ms(200);
+    bench.harness.get_by_role_and_label(Role::TextInput, "New name");
+    assert_keys_are_as_said(&mut bench, "the field of a rename", true);
+    assert!(
+        bench.harness.query_by_role_and_label(Role::TextInput, "New name").is_none(),
+        "Esc has closed it, too"
+    );
+}
+
+#[test]
+fn words_on_an_armed_screen_name_the_keys_that_stop_at_this_moment() {
+    let mut bench = Bench::new();
+    bench.connect();
+    bench.arm();
+    assert!(bench.said().contains(&"Armed for the PWM screen. Esc stops.".to_owned()));
+    assert!(bench.sees_part("Keep clear. Space or Esc stops both."));
+    bench.harness.get_by_role_and_label(Role::TextInput, "Other device").focus();
+    bench.pass_ms(200);
+    assert!(bench.sees_part("Keep clear. Esc stops both."));
+    assert!(!bench.sees_part("Space or Esc"));
+}
+
+#[test]
+fn stop_all_is_red_and_acts_while_any_unit_is_connected_and_another_is_searched() {
+    let mut bench = Bench::new();
+    assert!(!stop_all_is_red(&mut bench));
+    bench.connect();
+    assert!(stop_all_is_red(&mut bench));
+    bench.harness.get_by_role_and_label(Role::TextInput, "Other device").focus();
+    bench.pass_ms(100);
+    bench.harness.get_by_role_and_label(Role::TextInput, "Other device").type_text(SECOND);
+    bench.pass_ms(100);
+    bench.harness.key_press(Key::Enter);
+    bench.harness.step();
+    bench.harness.step();
+    assert_eq!(bench.model().front.target.as_deref(), Some(SECOND));
+    assert!(!bench.model().is_connected(), "the one in front is still searched");
+    assert!(stop_all_is_red(&mut bench));
+    let others = stops_of_first(&mut bench);
+    bench.press("Stop All");
+    bench.pass_ms(300);
+    assert_eq!(stops_of_first(&mut bench), others + 1);
+}
+
+/// How many stops the first device has reported from the background.
+fn stops_of_first(bench: &mut Bench) -> usize {
+    bench.model().messages.past().filter(|message| message.text.starts_with("sim:mcp266: Stopped.")).count()
 }
 
 #[test]

@@ -135,7 +135,7 @@ fn send_ui(
 const fn care(effect: Effect) -> Option<&'static str> {
     match effect {
         Effect::Motion | Effect::RelativeMotion | Effect::Buffered | Effect::Script => {
-            Some("This moves motors. Space or Esc stops.")
+            Some("This moves motors. Esc stops.")
         }
         Effect::Memory => Some("This changes what the controller keeps without power."),
         Effect::Setting => Some("This changes a setting in the controller's RAM."),

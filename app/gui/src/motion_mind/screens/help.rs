@@ -48,8 +48,8 @@ const GUIDE: [(&str, &[&str]); 8] = [
         &[
             "A Motion Mind has no serial time-out: a motor goes on with what it was told last when the cable or the computer dies. Have a \
              switch for its power at hand, or set VNLIMIT and VPLIMIT. During guided tuning they are kept just ahead of the motor.",
-            "Stop All, Space and Esc send every unit a standstill and look whether the motor stands. A loop that does not hold its motor still \
-             is switched off (DISABLEPID, in RAM) until the motor stands, then on again to hold it there. If it does not do that either, it \
+            "Stop All, Esc and, but where words are typed, Space send every unit a standstill and look whether the motor stands. A loop that does \
+             not hold its motor still is switched off (DISABLEPID, in RAM) until the motor stands, then on again to hold it there. If it does not do that either, it \
              stays off, which is said, until a screen is armed again.",
             "The brake input at ground switches the bridge off, whatever is commanded.",
         ],

@@ -99,7 +99,12 @@ fn field_ui(ui: &mut Ui, terminal: &mut Terminal) -> bool {
         if ui.button("Clear").on_hover_text("Empties the list").clicked() {
             terminal.clear();
         }
-        field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter))
+        let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+        if entered {
+            // The next line is typed at once, and a space in it is no stop.
+            field.request_focus();
+        }
+        entered
     })
     .inner
 }
