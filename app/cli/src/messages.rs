@@ -205,6 +205,5 @@ messages! {
         Broadcast "Units that do not answer were told to stop by a broadcast, which nobody confirms.",
         Silent { addresses: String } "Nobody answered at {addresses}; the stop was written to these addresses too.",
         NotLookedFor { addresses: String } "The stop was written to {addresses} too, where that program may not have looked for units.",
-        Matter { sentence: String } "{sentence}",
     }
 }

@@ -129,8 +129,9 @@ fn stop_line(line: &Line<'_>, interrupt: &Interrupt) -> Result<Stopped, Exit> {
         session.device.stop_all();
     }
     let report = wait_for_report(&session.device)?;
-    let latency = first.as_ref().unwrap_or(&report).latency();
-    Ok(Stopped { stop: LineStop { latency, ..LineStop::of(&units, &report) }, asked, by: None })
+    let mut stop = LineStop::of(&units, &report);
+    stop.latency = first.as_ref().unwrap_or(&report).latency();
+    Ok(Stopped { stop, asked, by: None })
 }
 
 /// The way on after whoever may hold the line was asked.
@@ -286,9 +287,7 @@ impl Stopped {
 
     /// What is not plainly stopped, and what was not reached.
     fn warnings(&self) -> Vec<Message> {
-        let matters = self.stop.matters.iter().cloned();
-        let mut lines: Vec<Message> =
-            matters.map(|sentence| CliStopMessage::Matter { sentence }.into()).collect();
+        let mut lines = self.stop.matters();
         let silent = self.silent();
         match self.asked {
             Addresses::These(_) if !silent.is_empty() => {

@@ -165,7 +165,7 @@ fn carry_out(
                 armed = Armed::Refused;
             }
             Some(Event::Failure(failure)) => say(failure.to_string()),
-            Some(Event::Stopped(report)) if report.from_outside => sequence.abort("it was stopped"),
+            Some(Event::Stopped(report)) if report.from_outside => sequence.abort(EndedMessage::Stopped),
             Some(event) => {
                 if let Event::JobProgress { text, .. } = &event {
                     say(text);

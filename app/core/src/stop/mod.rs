@@ -59,7 +59,7 @@ pub struct LineStop {
     /// The units that are known on it.
     pub units: Vec<StoppedUnit>,
     /// What is not plainly stopped, the words of [`matters`].
-    pub matters: Vec<String>,
+    matters: Vec<String>,
     /// From the request to the last byte handed to the port.
     pub latency: Duration,
 }
@@ -91,6 +91,11 @@ pub struct StoppedUnit {
     pub failures: Value,
 }
 
+/// A sentence as the program said it that has stopped the line.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+struct Told(String);
+
 impl LineStop {
     /// What `units` made of a stop.
     #[must_use]
@@ -101,6 +106,12 @@ impl LineStop {
             matters: matters(report, units).into_iter().map(|(_, text)| text.to_string()).collect(),
             latency: report.latency(),
         }
+    }
+
+    /// What is not plainly stopped, a sentence each.
+    #[must_use]
+    pub fn matters(&self) -> Vec<Message> {
+        self.matters.iter().map(|sentence| Message::error(Told(sentence.clone()))).collect()
     }
 
     /// Whether every unit confirmed.

@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
 
+use brushwork_core::messages::EndedMessage;
 use brushwork_link::{ArmScope, ConnectTarget, Event, Identity, PollRate, SettingValue, SettingsImage};
 use brushwork_plant::world::{ScriptRun, WorldView};
 use brushwork_values::Motor;
@@ -295,7 +296,7 @@ impl Connection {
     pub fn take(&mut self, event: Event) -> Vec<Effect> {
         let changes_ram = self.changes_ram(&event);
         if matches!(&event, Event::Stopped(report) if report.from_outside) {
-            self.tune.abort("`brushwork stop` was given in another program");
+            self.tune.abort(EndedMessage::Stopped);
         }
         self.history.note(&event);
         self.traffic.note(&event);

@@ -233,7 +233,12 @@ fn stop_all_is_red_and_acts_while_any_unit_is_connected_and_another_is_searched(
 
 /// How many stops the first device has reported from the background.
 fn stops_of_first(bench: &mut Bench) -> usize {
-    bench.model().messages.past().filter(|message| message.text.starts_with("sim:mcp266: Stopped.")).count()
+    bench
+        .model()
+        .messages
+        .past()
+        .filter(|message| message.text.to_string().starts_with("sim:mcp266: Stopped."))
+        .count()
 }
 
 #[test]
