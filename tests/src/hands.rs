@@ -107,6 +107,19 @@ impl Hands {
         self.flush();
     }
 
+    /// Arms the screen that is shown, and presses Page Up on one widget after the other until something is driven: on anything but a
+    /// slider it changes nothing that moves. Says whether it was. `armed` waits until the screen is.
+    pub fn drive(&self, armed: impl FnOnce(), is_driven: impl Fn() -> bool) -> bool {
+        self.press(&[Key::Escape]);
+        self.press(&[Key::Control, Key::Shift, Key::Char('a')]);
+        armed();
+        (0..80).any(|_| {
+            self.press(&[Key::Tab]);
+            self.press(&[Key::PageUp]);
+            is_driven()
+        })
+    }
+
     /// Moves the mouse to a point and clicks.
     ///
     /// # Panics

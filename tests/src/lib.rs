@@ -11,6 +11,8 @@ pub mod other_controller;
 pub mod rust_source;
 pub mod said;
 pub mod screen;
+#[cfg(unix)]
+pub mod served;
 pub mod simulated;
 pub mod truth;
 pub mod virtual_line;

@@ -4,6 +4,7 @@
 
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
@@ -18,7 +19,16 @@ const LOOK_INTERVAL: Duration = Duration::from_millis(100);
 pub struct Screen {
     display: String,
     folder: TempDir,
-    _server: Program,
+    server: Program,
+}
+
+/// The window of `program` on a display, drawn by Mesa's software renderer.
+#[must_use]
+pub fn on_display(program: &str, display: &str) -> Command {
+    let mut command = Command::new(program);
+    command.env("DISPLAY", display).env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
+    command.env("LIBGL_ALWAYS_SOFTWARE", "1");
+    command
 }
 
 impl Screen {
@@ -35,13 +45,19 @@ impl Screen {
         let Some(number) = server.next_line(wait::LIMIT) else {
             panic!("Xvfb names no display: {:?}", server.finish(wait::LIMIT))
         };
-        Self { display: format!(":{}", number.trim()), folder, _server: server }
+        Self { display: format!(":{}", number.trim()), folder, server }
     }
 
     /// The value for the environment variable `DISPLAY`.
     #[must_use]
     pub fn display(&self) -> &str {
         &self.display
+    }
+
+    /// The server dies, and every window on it loses its display.
+    #[cfg(unix)]
+    pub fn kill(&self) {
+        self.server.signal("KILL");
     }
 
     /// What is on the screen; none while Xvfb has not made its file.
@@ -108,6 +124,14 @@ impl Picture {
         let (width, height) = (self.width as u32, self.height as u32);
         let image = image::RgbImage::from_raw(width, height, self.rgb.clone()).expect("three bytes a pixel");
         image.save(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    }
+
+    /// Pixels of an indicator that says OK, whatever the theme's exact green.
+    #[must_use]
+    pub fn green(&self) -> usize {
+        let is_green =
+            |pixel: &&[u8]| pixel[1] > pixel[0].saturating_add(60) && pixel[1] > pixel[2].saturating_add(40);
+        self.rgb.chunks_exact(3).filter(is_green).count()
     }
 
     /// How many different colours it has: a blank screen has one, a window with text some hundred.

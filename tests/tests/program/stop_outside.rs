@@ -8,10 +8,11 @@ use std::time::Duration;
 use brushwork_mcp_wire::packet_serial::Generation;
 use brushwork_plant::machine::Machine;
 use brushwork_tests::program::{Ending, Program};
+use brushwork_tests::served::{Served, mcp, motion_mind};
 use brushwork_tests::simulated::{OnPty, is_driven};
 use brushwork_tests::wait::{self, LIMIT};
 
-use crate::guardian::{Served, mcp, motion_mind};
+use crate::guardian::driving as driving_on;
 
 const BRUSHWORK: &str = env!("CARGO_BIN_EXE_brushwork-for-tests");
 const DONE: i32 = 0;
@@ -55,14 +56,14 @@ fn assert_tells(ending: &Ending, unit: &str, holder: &Program, command: &str) {
 fn a_drive_is_stopped_from_outside_on_either_family_over_serial_and_tcp() {
     let stopped = "0x80: both motors stopped";
     let served = Served::on_pty(mcp(), ",stream=usb");
-    let drive = served.driving();
+    let drive = driving_on(&served);
     let ending = stop(&served.target, &[]);
     assert_off(&served);
     assert_tells(&ending, stopped, &drive, "drive");
     assert_was_told(drive);
 
     let served = Served::on_tcp(mcp(), ",stream=usb");
-    let drive = served.driving();
+    let drive = driving_on(&served);
     // Another name of the same place.
     let ending = stop(&served.target.replace("127.0.0.1", "localhost"), &["--address", "0x80"]);
     assert_off(&served);
@@ -70,7 +71,7 @@ fn a_drive_is_stopped_from_outside_on_either_family_over_serial_and_tcp() {
     assert_was_told(drive);
 
     let served = Served::on_pty(motion_mind(), ",family=motion-mind");
-    let drive = served.driving();
+    let drive = driving_on(&served);
     let ending = stop(&served.target, &[]);
     assert_off(&served);
     assert_tells(&ending, "unit 1: motor stopped", &drive, "drive");
@@ -183,7 +184,7 @@ fn a_program_that_was_halted_at_rest_is_told_as_that() {
 fn a_program_that_was_halted_or_killed_while_it_drove_hands_the_line_over() {
     let served = Served::on_pty(motion_mind(), ",family=motion-mind");
     for signal in ["STOP", "KILL"] {
-        let drive = served.driving();
+        let drive = driving_on(&served);
         drive.signal(signal);
         let ending = stop(&served.target, &[]);
         assert_off(&served);

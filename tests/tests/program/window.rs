@@ -11,7 +11,7 @@ use brushwork_mcp_wire::packet_serial::{Address, Generation, Request};
 use brushwork_tests::foreign::is_left_out;
 use brushwork_tests::hands::{Hands, Key};
 use brushwork_tests::program::{Ending, Program};
-use brushwork_tests::screen::{Picture, Screen};
+use brushwork_tests::screen::{self, Picture, Screen};
 use brushwork_tests::simulated::{OnPty, is_driven};
 use brushwork_tests::wait::{self, LIMIT};
 
@@ -24,10 +24,7 @@ const COLOURS_OF_A_WINDOW: usize = 200;
 const GREEN_OF_INDICATORS: usize = 400;
 
 fn window_on(display: &str) -> Command {
-    let mut command = Command::new(BRUSHWORK);
-    command.env("DISPLAY", display).env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
-    command.env("LIBGL_ALWAYS_SOFTWARE", "1");
-    command
+    screen::on_display(BRUSHWORK, display)
 }
 
 /// A window that was opened on a controller, and what it looks like once its indicators are green.
@@ -35,7 +32,7 @@ pub fn connected_window(screen: &Screen, controller: &OnPty) -> (Program, Pictur
     let mut command = window_on(screen.display());
     command.arg("--open").arg(controller.port());
     let window = Program::spawn(command);
-    match screen.wait_for(|picture| green_pixels(picture) >= GREEN_OF_INDICATORS) {
+    match screen.wait_for(|picture| picture.green() >= GREEN_OF_INDICATORS) {
         Some(picture) => (window, picture),
         None => panic!("no indicator is green: {:?}", window.finish(Duration::ZERO)),
     }
@@ -71,7 +68,7 @@ fn a_window_opened_on_a_controller_lights_its_indicators_and_moves_nothing() {
     let controller = OnPty::start(Generation::Gen4);
     let screen = Screen::start();
     let (mut window, picture) = connected_window(&screen, &controller);
-    println!("{} green pixels", green_pixels(&picture));
+    println!("{} green pixels", picture.green());
     assert!(window.is_running(), "the window stays open");
     assert!(controller.look(|unit| unit.view().axes.iter().all(|axis| axis.encoder_counts == 0)));
     assert!(!controller.look(is_driven));
@@ -165,25 +162,14 @@ fn hands_on_keyboard_and_mouse_arm_drive_and_stop_a_motor() {
     assert!(window.is_running());
 }
 
-/// Arms, and presses Page Up on one widget after the other. Page Up on anything but the slider changes nothing that moves. A machine
+/// Arms, and finds the slider. A machine
 /// that is too busy to paint the window in time disarms it, so this may have to be done again.
 fn drives_by_hand(hands: &Hands, controller: &OnPty) -> bool {
-    hands.press(&[Key::Escape]);
-    hands.press(&[Key::Control, Key::Shift, Key::Char('a')]);
-    controller.let_pass(Duration::from_millis(1500));
-    assert!(!controller.look(is_driven), "arming alone moves nothing");
-    (0..80).any(|_| {
-        hands.press(&[Key::Tab]);
-        hands.press(&[Key::PageUp]);
-        controller.look(is_driven)
-    })
-}
-
-/// Pixels of an indicator that says OK, whatever the theme's exact green.
-fn green_pixels(picture: &Picture) -> usize {
-    let is_green =
-        |pixel: &&[u8]| pixel[1] > pixel[0].saturating_add(60) && pixel[1] > pixel[2].saturating_add(40);
-    picture.rgb.chunks_exact(3).filter(is_green).count()
+    let armed = || {
+        controller.let_pass(Duration::from_millis(1500));
+        assert!(!controller.look(is_driven), "arming alone moves nothing");
+    };
+    hands.drive(armed, || controller.look(is_driven))
 }
 
 #[test]

@@ -1,0 +1,225 @@
+//! How soon a motor is off after the program that drives it was killed, or lost its display: seen in the simulator, whose controllers have no
+//! time-out of their own, or one of a minute.
+//!
+//! `cargo bench -p brushwork-tests --bench guardian -- [--kills 100] [--displays 20] [--load quiet|busy] [--program drive|tune|window]`. The table
+//! in SAFETY.md is what it prints. It ends with 1 where a motor was off later than promised, or a row could not be tried.
+#![expect(clippy::print_stdout, reason = "the table is what the benchmark is for")]
+
+fn main() -> std::process::ExitCode {
+    #[cfg(target_os = "linux")]
+    return killing::run();
+    #[cfg(not(target_os = "linux"))]
+    std::process::ExitCode::SUCCESS
+}
+
+/// Pseudo-terminals and Xvfb.
+#[cfg(target_os = "linux")]
+mod killing {
+    use std::process::{Command, ExitCode, Stdio};
+    use std::thread;
+    use std::time::Duration;
+
+    use brushwork_motion_mind_sim::{Mode, MotionMind, MotionMindBus, MotionMindConfig};
+    use brushwork_plant::machine::Machine;
+    use brushwork_tests::hands::{Hands, Key};
+    use brushwork_tests::program::{Child, Program};
+    use brushwork_tests::screen::{Screen, on_display};
+    use brushwork_tests::served::{Served, mcp, motion_mind};
+    use brushwork_tests::wait;
+
+    const BRUSHWORK: &str = env!("CARGO_BIN_EXE_brushwork-for-tests");
+
+    /// How many programs keep the machine busy.
+    const BUSY: usize = 8;
+    /// A motor that is driven for so long is not stopped by anybody.
+    const NEVER: Duration = Duration::from_secs(5);
+    /// A window has opened on a controller when so much is green.
+    const GREEN_OF_INDICATORS: usize = 100;
+    /// How long the device thread may take to arm.
+    const ARMING: Duration = Duration::from_millis(1500);
+    /// Moments of an attack lie so far apart within a run, in so many steps.
+    const MOMENTS: (Duration, u32) = (Duration::from_millis(17), 13);
+
+    /// What is asked for.
+    struct Wanted {
+        kills: u32,
+        displays: u32,
+        load: Option<String>,
+        program: Option<String>,
+    }
+
+    impl Wanted {
+        /// Of the command line, without what cargo adds.
+        fn read() -> Result<Self, String> {
+            let mut wanted = Self { kills: 100, displays: 20, load: None, program: None };
+            let mut words = std::env::args().skip(1).filter(|word| word != "--bench");
+            while let Some(word) = words.next() {
+                let value = words.next().ok_or_else(|| format!("{word} has no value."))?;
+                let count = || value.parse().map_err(|_| format!("{word} {value} is no number."));
+                match word.as_str() {
+                    "--kills" => wanted.kills = count()?,
+                    "--displays" => wanted.displays = count()?,
+                    "--load" => wanted.load = Some(value),
+                    "--program" => wanted.program = Some(value),
+                    _ => return Err(format!("There is no option {word}.")),
+                }
+            }
+            Ok(wanted)
+        }
+    }
+
+    /// Who drives, and how it is attacked.
+    #[derive(Clone, Copy, PartialEq, Eq)]
+    enum Attack {
+        Drive,
+        Tune,
+        Window,
+        Display,
+    }
+
+    impl Attack {
+        const ALL: [Self; 4] = [Self::Drive, Self::Tune, Self::Window, Self::Display];
+
+        fn program(self) -> &'static str {
+            match self {
+                Self::Drive => "drive",
+                Self::Tune => "tune",
+                Self::Window | Self::Display => "window",
+            }
+        }
+
+        fn title(self) -> &'static str {
+            if self == Self::Display { "X server killed" } else { "kill -9" }
+        }
+
+        fn wants_display(self) -> bool {
+            self.program() == "window"
+        }
+    }
+
+    pub fn run() -> ExitCode {
+        let wanted = match Wanted::read() {
+            Ok(wanted) => wanted,
+            Err(why) => {
+                println!("{why}");
+                return ExitCode::from(2);
+            }
+        };
+        let has_xvfb = std::env::var_os("PATH")
+            .is_some_and(|path| std::env::split_paths(&path).any(|folder| folder.join("Xvfb").is_file()));
+        println!(
+            "| Attack | Program | Controller | Load | Tried | Motor off in: median | p99 | worst | Goal |"
+        );
+        println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- |");
+        let mut is_kept = true;
+        for (load, goal_ms) in [("quiet", 100), ("busy", 300)] {
+            if wanted.load.as_ref().is_some_and(|only| only != load) {
+                continue;
+            }
+            let busy: Vec<Child> = (0..if load == "busy" { BUSY } else { 0 }).map(|_| keep_busy()).collect();
+            for attack in Attack::ALL {
+                if wanted.program.as_ref().is_some_and(|only| only != attack.program()) {
+                    continue;
+                }
+                if attack.wants_display() && !has_xvfb {
+                    println!(
+                        "Xvfb is not installed, so that the window was not tried: on Debian, apt install xvfb."
+                    );
+                    is_kept = false;
+                    continue;
+                }
+                let times = if attack == Attack::Display { wanted.displays } else { wanted.kills };
+                let on_mcp = (0..times).map(|turn| once(&Served::on_pty(mcp(), ",stream=usb"), attack, turn));
+                is_kept &= row(attack, "MCP266", load, goal_ms, on_mcp.collect());
+                let mind = ",family=motion-mind";
+                let on_mind = (0..times).map(|turn| match attack {
+                    Attack::Tune => once(&Served::on_pty(tunable(), mind), attack, turn),
+                    Attack::Drive | Attack::Window | Attack::Display => {
+                        once(&Served::on_pty(motion_mind(), mind), attack, turn)
+                    }
+                });
+                is_kept &= row(attack, "Motion Mind 3", load, goal_ms, on_mind.collect());
+            }
+            drop(busy);
+        }
+        ExitCode::from(u8::from(!is_kept))
+    }
+
+    /// A Motion Mind whose loop can be tuned.
+    fn tunable() -> MotionMindBus {
+        let unit =
+            MotionMind::new(MotionMindConfig::new(Mode::SerialPid)).expect("the default motor is sound");
+        MotionMindBus::new(vec![unit])
+    }
+
+    fn keep_busy() -> Child {
+        let mut command = Command::new("sh");
+        command.args(["-c", "while :; do :; done"]);
+        Child::spawn(&command, [Stdio::null(), Stdio::null(), Stdio::null()])
+    }
+
+    /// Prints a row. Whether all of it is within the goal.
+    fn row(attack: Attack, unit: &str, load: &str, goal_ms: u64, took: Vec<Option<Duration>>) -> bool {
+        let mut took: Vec<Duration> = took.into_iter().map(|took| took.unwrap_or(NEVER)).collect();
+        took.sort_unstable();
+        let Some(last) = took.len().checked_sub(1) else { return true };
+        let at = |share: usize| took[(last * share).div_ceil(100)].as_secs_f64() * 1e3;
+        let is_kept = took[last] <= Duration::from_millis(goal_ms);
+        println!(
+            "| {} | {} | {unit} | {load} | {} | {:.0} ms | {:.0} ms | {:.0} ms | {goal_ms} ms{} |",
+            attack.title(),
+            attack.program(),
+            took.len(),
+            at(50),
+            at(99),
+            at(100),
+            if is_kept { "" } else { ", MISSED" }
+        );
+        is_kept
+    }
+
+    /// One attack, at a moment that depends on its turn.
+    fn once<M: Machine + 'static>(served: &Served<M>, attack: Attack, turn: u32) -> Option<Duration> {
+        let target = served.target.as_str();
+        let (program, screen) = match attack {
+            Attack::Drive => {
+                let words = ["drive", "-c", target, "--motor", "1", "--duty", "40", "--for", "600"];
+                (Program::start(BRUSHWORK, &words), None)
+            }
+            Attack::Tune => {
+                (Program::start(BRUSHWORK, &["tune", "velocity", "-c", target, "--dry-run"]), None)
+            }
+            Attack::Window | Attack::Display => {
+                let (window, screen) = driving_window(served);
+                (window, Some(screen))
+            }
+        };
+        let driven = || wait::until("a driven motor", || served.look().0, || "it stands".to_owned());
+        driven();
+        let (step, moments) = MOMENTS;
+        thread::sleep(step * (turn % moments));
+        driven();
+        let strike = || match (&screen, attack) {
+            (Some(screen), Attack::Display) => screen.kill(),
+            (Some(_) | None, _) => program.signal("KILL"),
+        };
+        served.off_after(strike, NEVER)
+    }
+
+    /// A window whose slider was moved by keys.
+    fn driving_window<M: Machine + 'static>(served: &Served<M>) -> (Program, Screen) {
+        let screen = Screen::start();
+        let mut command = on_display(BRUSHWORK, screen.display());
+        command.arg("--open").arg(&served.target);
+        let window = Program::spawn(command);
+        let connected = screen.wait_for(|picture| picture.green() >= GREEN_OF_INDICATORS);
+        assert!(connected.is_some(), "no indicator is green: {:?}", window.finish(Duration::ZERO));
+        let hands = Hands::at(screen.display());
+        hands.click(640, 700);
+        hands.focus();
+        hands.press(&[Key::Control, Key::Char('3')]);
+        let drive = || hands.drive(|| thread::sleep(ARMING), || served.look().0);
+        wait::until("a slider that moves its motor", drive, || "it stands".to_owned());
+        (window, screen)
+    }
+}
