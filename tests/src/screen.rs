@@ -19,6 +19,7 @@ const LOOK_INTERVAL: Duration = Duration::from_millis(100);
 pub struct Screen {
     display: String,
     folder: TempDir,
+    #[cfg_attr(not(unix), expect(dead_code, reason = "it ends with this, and there are no signals to send"))]
     server: Program,
 }
 

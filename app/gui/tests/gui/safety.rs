@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use crate::support::bench::{Bench, SECOND};
 use brushwork_gui::model::link::Arming;
-use brushwork_link::Clock as _;
+use brushwork_link::{Addresses, Clock as _};
 use brushwork_plant::world::WorldAction;
 use brushwork_values::Motor;
 use egui::accesskit::Role;
@@ -271,6 +271,23 @@ fn the_arm_switch_disarms_and_stops() {
     bench.press("Arm");
     bench.pass_ms(200);
     assert_stopped_and_disarmed(&mut bench);
+}
+
+#[test]
+fn a_stop_from_another_program_stops_disarms_and_says_where_it_came_from() {
+    let mut bench = driving();
+    let app = bench.harness.state().as_ref().expect("the first frame made it");
+    let told = app.device().expect("a link is open").stopper().stop_from_outside(Addresses::Scan);
+    bench.pass_ms(500);
+    assert_stopped_and_disarmed(&mut bench);
+    let (units, report) = told.try_recv().expect("it was served");
+    assert!(report.confirmed() && report.from_outside && units.len() == 1);
+    let said = "Stopped by `brushwork stop`, from another program. The stop was on the wire after ";
+    assert!(bench.sees_part(said), "{:?}", bench.said());
+    // The next one is the window's own.
+    bench.key(Key::Escape);
+    bench.pass_ms(300);
+    assert!(bench.said().first().is_some_and(|said| said.starts_with("Stopped. ")), "{:?}", bench.said());
 }
 
 #[test]
