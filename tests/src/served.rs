@@ -67,23 +67,40 @@ impl<M: Machine + 'static> Served<M> {
         self.handle.inspect(look).expect("the server runs as long as this does")
     }
 
-    /// How long after `attack` the motor was off for good, in the machine's time and as late as it can have been: from the last look before
-    /// to the first look at which nothing was driven, and nothing was for a while after. None where it was still driven after `limit`.
-    pub fn off_after(&self, attack: impl FnOnce(), limit: Duration) -> Option<Duration> {
+    /// When the motor was off for good after `attack`. None where it was still driven after `limit`.
+    pub fn off_after(&self, attack: impl FnOnce(), limit: Duration) -> Option<Off> {
         const FOR_GOOD: Duration = Duration::from_millis(300);
         let (_, before) = self.look();
         attack();
-        let mut off_at = None;
+        let (mut driven_until, mut off_at) = (before, None);
         loop {
             let (is_driven, now) = self.look();
-            off_at = if is_driven { None } else { off_at.or(Some(now)) };
-            match off_at {
-                Some(off_at) if now >= off_at + FOR_GOOD => return Some(off_at.saturating_sub(before)),
-                None if now >= before + limit => return None,
-                Some(_) | None => {}
+            if is_driven {
+                (driven_until, off_at) = (now, None);
+                if now >= before + limit {
+                    return None;
+                }
+                continue;
+            }
+            let first_off = *off_at.get_or_insert(now);
+            if now >= first_off + FOR_GOOD {
+                return Some(Off {
+                    off_after: first_off.saturating_sub(before),
+                    driven_for: driven_until.saturating_sub(before),
+                });
             }
         }
     }
+}
+
+/// When a motor was off, in the machine's time from the last look before the attack. Far apart, the two say that this computer was too late to
+/// tell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Off {
+    /// The first look at which nothing was driven, and nothing was for a while after.
+    pub off_after: Duration,
+    /// The last look before it.
+    pub driven_for: Duration,
 }
 
 /// A Motion Mind that drives by duty, and has no time-out.

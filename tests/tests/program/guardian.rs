@@ -32,7 +32,7 @@ fn is_stopped_after<M: Machine + 'static>(served: &Served<M>, signal: &str) -> D
     let program = driving(served);
     let took = served.off_after(|| program.signal(signal), SOON);
     println!("SIG{signal} on {}: off after {took:?}", served.target);
-    took.expect("the motor is off")
+    took.expect("the motor is off").driven_for
 }
 
 #[test]
