@@ -14,6 +14,7 @@ use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
+use super::boards::Boards;
 use super::indicators::Indicators;
 use super::message::Gravity;
 use super::readings::Readings;
@@ -75,6 +76,8 @@ pub struct LinkView {
     /// Whether the pins hold a motor at a home or limit switch, where they are known.
     homed: Option<[bool; 2]>,
     pub status: Option<StatusReport>,
+    /// What is known of each unit, for their list.
+    pub boards: Boards,
     pub statistics: LinkStatistics,
     /// How far the search for units is, while there is one.
     pub searching: Option<Search>,
@@ -133,6 +136,7 @@ impl LinkView {
     /// Takes over an event.
     pub fn take(&mut self, event: Event) -> Vec<Effect> {
         let finding = self.motion.take(&event);
+        self.boards.note(&event);
         let mut effects = self.heard(event);
         effects.extend(finding.map(|finding| {
             let gravity = if finding.is_fault() { Gravity::Error } else { Gravity::Warning };

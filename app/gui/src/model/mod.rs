@@ -5,6 +5,7 @@ use egui::ThemePreference;
 
 use super::mcl::Editor;
 
+pub mod boards;
 pub mod canopen;
 pub mod channels;
 pub mod connection;

@@ -2,7 +2,7 @@
 
 use brushwork_link::{Addresses, FamilyChoice, Identity, PortInfo};
 use egui::{
-    Align2, ComboBox, Key, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, TextStyle, Ui,
+    Align2, ComboBox, Key, Label, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, TextStyle, Ui,
     WidgetInfo, pos2, vec2,
 };
 
@@ -11,7 +11,9 @@ use egui::containers::menu::MenuButton;
 use crate::command::{Command, Commands};
 use crate::family::{self, Family};
 use crate::model::devices::{BAUD_RATES, Choice, Devices};
-use crate::model::{Arming, Connection, ConnectionId, IndicatorState, Model, Phase, Simulated, place_of};
+use crate::model::{
+    Arming, Connection, ConnectionId, IndicatorState, LinkView, Model, Phase, Simulated, place_of,
+};
 use crate::screens::face;
 use crate::theme::Palette;
 use crate::widgets::{choice_ui, heading_ui, text_field_ui};
@@ -396,6 +398,21 @@ fn units_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
         if ui.selectable_label(selected, unit_text(unit)).clicked() && !selected {
             commands.push(Command::SelectUnit(unit.address));
         }
+        board_ui(ui, &model.front.link, unit);
+    }
+}
+
+/// How one unit of several is.
+fn board_ui(ui: &mut Ui, link: &LinkView, unit: &Identity) {
+    let (state, said) = link.boards.state(unit.address);
+    ui.horizontal(|ui| {
+        let (rect, _) = ui.allocate_exact_size(vec2(14.0, 12.0), Sense::hover());
+        state.paint(ui, rect.center(), 4.0);
+        ui.add(Label::new(RichText::new(&said).small()).truncate()).on_hover_text(&said);
+    });
+    let figures = link.boards.figures(unit.address);
+    if !figures.is_empty() {
+        ui.add(Label::new(RichText::new(&figures).small().weak()).truncate()).on_hover_text(&figures);
     }
 }
 

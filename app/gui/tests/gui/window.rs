@@ -279,6 +279,26 @@ fn units_that_share_a_line_are_listed_and_one_is_looked_at() {
 }
 
 #[test]
+fn each_unit_of_a_line_has_a_row_with_its_battery_currents_and_errors() {
+    let mut bench = Bench::with_two_units();
+    bench.connect();
+    let low = WorldAction::SetBatteryVolts { volts: 7.0 };
+    bench.act_on(1, &low);
+    bench.pass_ms(6_000);
+    assert_eq!(bench.model().front.link.selected, Some(0x80));
+    let row = |bench: &mut Bench, address| {
+        let boards = &bench.model().front.link.boards;
+        (boards.figures(address), boards.state(address).1)
+    };
+    let (first, second) = (row(&mut bench, 0x80), row(&mut bench, 0x81));
+    assert!(first.0.starts_with("24.0 V  ") && first.0.contains("M2 "), "{first:?}");
+    assert!(second.0.starts_with("7.0 V  ") && second.0.contains("M2 "), "{second:?}");
+    assert_eq!(first.1, "OK");
+    assert!(second.1.contains("Main battery low"), "{second:?}");
+    assert!(bench.sees(&second.0) && bench.sees(&second.1), "the rows show it");
+}
+
+#[test]
 fn the_panel_of_the_world_acts_on_the_unit_that_is_looked_at() {
     let mut bench = Bench::with_two_units();
     bench.connect();

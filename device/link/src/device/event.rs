@@ -40,7 +40,7 @@ pub enum Event {
         /// Which of its streams the port is, where that is known; else the user must be asked before arming.
         stream: Option<Stream>,
     },
-    /// One sweep's readings. When nobody takes events, the oldest waiting samples go first and are counted in
+    /// One sweep's readings, or, with another address than the selected one, a reading of another unit of the bus, which has no number. When nobody takes events, the oldest waiting samples go first and are counted in
     /// [`LinkStatistics::dropped_samples`].
     Sample(Box<Sample>),
     /// The status word: when it changed, and once a second.

@@ -275,7 +275,12 @@ impl Bench {
 
     /// Does something to the world behind the window's back.
     pub fn act(&self, action: &WorldAction) {
-        self.line.with(|bus| bus.apply(0, action));
+        self.act_on(0, action);
+    }
+
+    /// The same to the world of any unit of the bus.
+    pub fn act_on(&self, unit: usize, action: &WorldAction) {
+        self.line.with(|bus| bus.apply(unit, action));
     }
 
     pub fn plug_in_port(&self, name: &str) {

@@ -1,5 +1,5 @@
 //! Reading the signals: a sweep of the selected unit's fast ones with one slow one in turn, and one look at one of the
-//! other units of the bus.
+//! other units of the bus: its status, and one of its signals in turn.
 
 use super::state::DeviceLoop;
 use super::sweep::SUSPENSION;
@@ -39,7 +39,7 @@ impl DeviceLoop {
         }
         let Some((index, item)) = self.sweep.items.pop_front() else { return self.end_sweep() };
         let mut sample = std::mem::replace(&mut self.sweep.sample, Sample::new(0));
-        let mut other = Sample::new(0);
+        let mut other = Sample::new(self.units[index].controller.identity().address);
         let into = if index == self.selected { &mut sample } else { &mut other };
         let read = self.act_on(index, now, |controller, line| controller.poll(line, item, into));
         self.sweep.sample = sample;
@@ -47,6 +47,10 @@ impl DeviceLoop {
             Ok(status) => {
                 self.sweep.failures_in_a_row = 0;
                 self.units[index].plan.answered(item);
+                if !other.is_empty() {
+                    // A graph counts the samples of the selected unit alone, so that this one has no number.
+                    self.outbox.send(Event::Sample(Box::new(other)));
+                }
                 if let Some(status) = status {
                     self.take_status(index, status);
                 }
@@ -64,23 +68,24 @@ impl DeviceLoop {
         self.sweep.begun_at = now;
         let (selected, with_signals) = (self.selected, self.reads_signals);
         self.sweep.items.extend(unit.plan.sweep(now, with_signals).into_iter().map(|item| (selected, item)));
-        if let Some((index, item)) = self.look_at_another(now) {
-            self.sweep.items.push_back((index, item));
-        }
+        let others = self.look_at_another(now);
+        self.sweep.items.extend(others);
     }
 
-    /// The status of the next of the other units.
-    fn look_at_another(&mut self, now: Duration) -> Option<(usize, PollItem)> {
+    /// The status of the next of the other units, and one more of its signals in turn while nothing is armed.
+    fn look_at_another(&mut self, now: Duration) -> Vec<(usize, PollItem)> {
         if self.units.len() < 2 {
-            return None;
+            return Vec::new();
         }
         self.sweep.other_unit = (self.sweep.other_unit + 1) % self.units.len();
         let index = self.sweep.other_unit;
-        let plan = &self.units[index].plan;
-        plan.list
-            .status
-            .filter(|item| index != self.selected && plan.works(*item, now))
-            .map(|item| (index, item))
+        if index == self.selected {
+            return Vec::new();
+        }
+        let plan = &mut self.units[index].plan;
+        let status = plan.list.status.filter(|item| plan.works(*item, now));
+        let in_turn = if self.armed.is_none() { plan.next_in_turn(now) } else { None };
+        status.into_iter().chain(in_turn).map(|item| (index, item)).collect()
     }
 
     /// Hands the sample over and sets the time of the next sweep.

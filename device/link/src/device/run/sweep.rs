@@ -51,6 +51,7 @@ impl Sweep {
 pub struct Plan {
     pub list: PollList,
     next_slow: usize,
+    next_of_all: usize,
     slow_due_at: Duration,
     misses: Vec<(PollItem, u32, Duration)>,
     read: HashSet<PollItem>,
@@ -64,6 +65,7 @@ impl Plan {
         Self {
             list,
             next_slow: 0,
+            next_of_all: 0,
             slow_due_at: Duration::ZERO,
             misses: Vec::new(),
             read: HashSet::new(),
@@ -90,6 +92,17 @@ impl Plan {
         let index = turn.into_iter().find(|index| self.works(slow[*index], now))?;
         self.next_slow = index + 1;
         Some(self.list.slow[index])
+    }
+
+    /// The next of all that it can be asked but the status, for a unit that is only looked at in passing.
+    pub fn next_in_turn(&mut self, now: Duration) -> Option<PollItem> {
+        let items: Vec<_> = self.list.fast.iter().chain(&self.list.slow).copied().collect();
+        let turn = (0..items.len()).map(|step| (self.next_of_all + step) % items.len());
+        let mut wanted =
+            turn.filter(|index| Some(items[*index]) != self.list.status && self.works(items[*index], now));
+        let index = wanted.next()?;
+        self.next_of_all = index + 1;
+        Some(items[index])
     }
 
     pub fn works(&self, item: PollItem, now: Duration) -> bool {
