@@ -15,11 +15,13 @@ use crossbeam_channel::RecvTimeoutError;
 use super::addresses::Line;
 use super::examples;
 use super::family;
+use super::settings::cut_short;
 use super::{ConnectArgs, Exit, Family, Interrupt, say};
-use brushwork_core::keep::Store;
+use brushwork_core::keep::{Store, UnitId};
 use brushwork_core::messages::CoreStatusMessage;
 use brushwork_core::session::{self, LIKE, Session, SessionOptions, Simulation};
 use brushwork_link::family::addresses_text;
+use brushwork_link::transport::list_ports;
 
 /// How long a controller may take to be found and identified.
 pub const CONNECT_LIMIT: Duration = Duration::from_secs(60);
@@ -56,8 +58,25 @@ impl Client {
         running: Option<Arc<Simulation>>,
         interrupt: &Interrupt,
     ) -> Result<Self, Exit> {
+        let client = Self::connect_untold(args, poll, running, interrupt)?;
+        let unit = UnitId::new(&client.identity, &list_ports().unwrap_or_default());
+        cut_short::announce(&unit, args.place());
+        Ok(client)
+    }
+
+    /// The same, without a word of what was cut short on the unit: for those who read its settings and tell more.
+    ///
+    /// # Errors
+    /// As for [`Self::connect`].
+    pub fn connect_untold(
+        args: &ConnectArgs,
+        poll: PollRate,
+        running: Option<Arc<Simulation>>,
+        interrupt: &Interrupt,
+    ) -> Result<Self, Exit> {
         alone(args)?;
         let session = open(args, poll, running)?;
+        interrupt.hold_line();
         if let Some(simulation) = &session.simulation {
             simulation.unlike().iter().for_each(say);
         }
@@ -196,21 +215,29 @@ pub fn found(target: &ConnectTarget, line: &Line<'_>, interrupt: &Interrupt) -> 
             return Ok(Vec::new());
         }
     };
-    let mut found = Vec::new();
+    interrupt.hold_line();
+    let (found, failures) = look_on(&session, interrupt)?;
+    failures.iter().for_each(say);
+    Ok(found)
+}
+
+/// Those who answer on an open line, and what failed in finding them.
+fn look_on(session: &Session, interrupt: &Interrupt) -> Result<(Vec<Identity>, Vec<Failure>), Exit> {
+    let (mut found, mut failures) = (Vec::new(), Vec::new());
     let deadline = Instant::now() + CONNECT_LIMIT;
     while Instant::now() < deadline {
         match look_for_event(&session.device, interrupt)? {
             Ok(Some(Event::Connected(identity))) => found.push(identity),
             Ok(Some(Event::Selected { .. })) => break,
-            Ok(Some(Event::Failure(failure))) => say(failure),
+            Ok(Some(Event::Failure(failure))) => failures.push(failure),
             Ok(_) => {}
             Err(failure) => {
-                say(failure);
+                failures.push(failure);
                 break;
             }
         }
     }
-    Ok(found)
+    Ok((found, failures))
 }
 
 /// Says what is known of a place at which nobody answers.

@@ -83,7 +83,7 @@ pub fn run(
 }
 
 fn with_interrupt(run: impl FnOnce(&mut Output, &Interrupt) -> Result<Exit, Exit>) -> ExitCode {
-    match Interrupt::install() {
+    match Interrupt::install_for_command() {
         Ok(interrupt) => run(&mut Output::stdout(), &interrupt).unwrap_or_else(|exit| exit),
         Err(error) => Exit::Failed.saying(CliLinkMessage::NoCtrlC { error: error.to_string() }),
     }

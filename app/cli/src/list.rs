@@ -5,6 +5,7 @@ use brushwork_link::{ConnectTarget, Event, Identity, PollRate, PortInfo, SystemC
 use serde::Serialize;
 
 use super::args::ListArgs;
+use super::client::look_for_event;
 use super::family::{SimulatedModel, families};
 use super::{Exit, Interrupt, Output, OutputError, say};
 use brushwork_core::session::{self, SessionOptions};
@@ -88,15 +89,16 @@ fn scan(path: &str, interrupt: &Interrupt) -> Vec<Identity> {
         }
     };
     let mut units = Vec::new();
-    while !interrupt.is_raised() {
-        match session.device.events().recv() {
-            Ok(Event::Connected(identity)) => units.push(identity),
-            Ok(Event::Lost(failure)) => {
+    interrupt.hold_line();
+    while let Ok(event) = look_for_event(&session.device, interrupt) {
+        match event {
+            Ok(Some(Event::Connected(identity))) => units.push(identity),
+            Err(failure) => {
                 say(failure.to_string());
                 session::waiting_at(path).into_iter().for_each(say);
                 break;
             }
-            Ok(Event::Selected { .. }) | Err(_) => break,
+            Ok(Some(Event::Selected { .. })) => break,
             Ok(_) => {}
         }
     }

@@ -9,7 +9,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::{Exit, say};
+use super::interrupt::meanwhile;
+use super::{Exit, Interrupt};
 
 /// Whether a file that exists may be replaced.
 #[derive(Debug, Clone, Copy, Default, Args)]
@@ -30,6 +31,18 @@ pub enum NewFileError {
     Exists {
         /// The file.
         path: PathBuf,
+    },
+    /// A symbolic link of that name is there; what it leads to is never written to.
+    #[error(
+        "{} is a symbolic link to {} and nothing was written through it. Give --force to replace it, not what it leads to, or choose another name.",
+        path.display(),
+        target.display()
+    )]
+    Link {
+        /// The link.
+        path: PathBuf,
+        /// What it says.
+        target: PathBuf,
     },
     /// The command reads that file.
     #[error(
@@ -59,8 +72,8 @@ pub enum NewFileError {
 impl From<NewFileError> for Exit {
     /// Says it on standard error.
     fn from(error: NewFileError) -> Self {
-        say(error.to_string());
-        Self::Failed
+        let is_ended = matches!(&error, NewFileError::System { source, .. } if source.kind() == io::ErrorKind::Interrupted);
+        if is_ended { Self::Interrupted } else { Self::Failed.saying(error) }
     }
 }
 
@@ -100,7 +113,7 @@ impl<'a> NewFile<'a> {
         match fs::symlink_metadata(self.path) {
             Ok(found) if found.is_dir() => Err(NewFileError::Folder { path: path() }),
             Ok(_) if self.may_replace || self.is_ours || is_stream(self.path) => Ok(()),
-            Ok(_) => Err(NewFileError::Exists { path: path() }),
+            Ok(_) => Err(exists(self.path)),
             // Nothing is there, or writing will say what is wrong.
             Err(_) => Ok(()),
         }
@@ -121,11 +134,19 @@ impl<'a> NewFile<'a> {
             create(self.path, bytes)
         };
         written.map_err(|source| match source.kind() {
-            io::ErrorKind::AlreadyExists => NewFileError::Exists { path: self.path.to_owned() },
+            io::ErrorKind::AlreadyExists => exists(self.path),
             _ => NewFileError::System { path: self.path.to_owned(), source },
         })?;
         self.is_ours = true;
         Ok(())
+    }
+}
+
+/// What is met where a file is to be new.
+fn exists(path: &Path) -> NewFileError {
+    match fs::read_link(path) {
+        Ok(target) => NewFileError::Link { path: path.to_owned(), target },
+        Err(_) => NewFileError::Exists { path: path.to_owned() },
     }
 }
 
@@ -163,7 +184,12 @@ fn write_to_stream(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if is_one_of(["/dev/stderr", "/dev/fd/2", "/proc/self/fd/2"]) {
         return io::stderr().write_all(bytes);
     }
-    File::options().append(true).open(path)?.write_all(bytes)
+    let (path, bytes) = (path.to_owned(), bytes.to_vec());
+    // A pipe is opened when somebody reads from it, which may be never.
+    let write = move || File::options().append(true).open(path)?.write_all(&bytes);
+    let ended = || io::Error::from(io::ErrorKind::Interrupted);
+    let written = meanwhile(write, &|| Interrupt::of_process().breathe()).map_err(|_| ended())?;
+    written.unwrap_or_else(|| Err(ended()))
 }
 
 /// Whether the path leads to something that is written to and not replaced: standard output, a pipe, a device.
@@ -254,7 +280,8 @@ mod tests {
             assert!(matches!(refused, NewFileError::OwnInput { .. }), "{refused}");
             assert!(NewFile::new(name, UNASKED).write(b"x").is_err());
         }
-        assert!(NewFile::new(&dangling, UNASKED).write(b"x").is_err());
+        let met = NewFile::new(&dangling, UNASKED).write(b"x").unwrap_err().to_string();
+        assert!(met.contains("is a symbolic link to") && met.contains("nowhere"), "{met}");
         assert!(!folder.path().join("nowhere").exists());
         NewFile::new(&soft, ASKED).write(b"new").unwrap();
         assert_eq!((text(&path).as_str(), text(&soft).as_str()), ("precious", "new"));

@@ -98,7 +98,7 @@ fn stop_line(line: &Line<'_>, interrupt: &Interrupt) -> Result<Stopped, Exit> {
     };
     let open = |family| {
         let options = SessionOptions { addresses: asked, poll: PollRate::Off, family };
-        session::open(&target, options, SystemClock::shared(), None)
+        session::open(&target, options, SystemClock::shared(), None).inspect(|_| interrupt.hold_line())
     };
     let on_can = matches!(target, ConnectTarget::Can { .. });
     let mut session = match by_holder(&target, asked, interrupt, || open(line.family))? {

@@ -125,6 +125,7 @@ messages! {
         One { since: String } "1 save to this EEPROM was counted, {since}.",
         Saves { saves: u64, since: String } "{saves} saves to this EEPROM were counted since {since}.",
         Half { count: Message, endurance: u64 } "{count} It is half worn if it is flash that stands in for EEPROM; save only what is to last (assumed: {endurance} writes).",
+        EarlierLost { count: Message } "{count} What was counted before is lost: its file was damaged and is put aside. Take it for more than that.",
         Worn { count: Message, endurance: u64 } "{count} It may be worn out; check after each save that it took, and save only what is to last (assumed: {endurance} writes).",
     }
 }

@@ -90,7 +90,8 @@ impl Expected {
     /// What is known of an update that is resumed: what was noted when it was begun at that place.
     #[must_use]
     pub fn resumed(store: &Store, place: &str, announced: Option<String>) -> Self {
-        let begun = store.update_at(place);
+        // Whoever resumes an update names model and image himself: what cannot be read is not compared.
+        let begun = store.update_at(place).ok().flatten();
         let kept = begun.as_ref().and_then(|begun| {
             let backup = store.backups(None).into_iter().find(|backup| backup.name == begun.backup)?;
             let profile = backup.open().ok()?.profile;

@@ -5,12 +5,13 @@
 
 use crate::messages::{WindowActMessage, WindowRemedyMessage};
 use brushwork_link::Message;
+use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::thread::{self, JoinHandle};
-use std::{fs, io};
 
 use brushwork_link::Failure;
-use brushwork_link::settings::replace_file;
+use brushwork_link::files::{Disk, Files, replace};
 use crossbeam_channel::{Receiver, Sender, bounded};
 use egui::{Context, Rect, ThemePreference, ViewportInfo};
 use serde::{Deserialize, Serialize};
@@ -129,7 +130,12 @@ impl Memory {
 
     /// Reads the file at `path`; without one nothing is kept.
     pub fn at(path: Option<PathBuf>) -> (Self, Option<Failure>) {
-        let (remembered, failure) = match path.as_deref().map(read) {
+        Self::on(Arc::new(Disk), path)
+    }
+
+    /// The same on a disk of choice.
+    fn on(files: Arc<dyn Files>, path: Option<PathBuf>) -> (Self, Option<Failure>) {
+        let (remembered, failure) = match path.as_deref().map(|path| read(&*files, path)) {
             None => (Remembered::default(), None),
             Some(Ok(remembered)) => (remembered, None),
             Some(Err(failure)) => (Remembered::default(), Some(failure)),
@@ -138,7 +144,7 @@ impl Memory {
             saved: remembered.clone(),
             current: remembered,
             changed_at_s: None,
-            writer: Writer::start(path),
+            writer: Writer::start(files, path),
         };
         (memory, failure)
     }
@@ -187,8 +193,8 @@ fn placed(viewport: &ViewportInfo, zoom: f32, before: Option<Placed>) -> Option<
     Some(if now.maximized { Placed { maximized: true, ..before.unwrap_or(now) } } else { now })
 }
 
-fn read(path: &Path) -> Result<Remembered, Failure> {
-    let text = match fs::read_to_string(path) {
+fn read(files: &dyn Files, path: &Path) -> Result<Remembered, Failure> {
+    let text = match files.read(path) {
         Ok(text) => text,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Remembered::default()),
         Err(error) => return Err(unread(path, Message::error(error), WindowRemedyMessage::StartsAsAtFirst)),
@@ -198,7 +204,7 @@ fn read(path: &Path) -> Result<Remembered, Failure> {
         Err(error) => {
             let aside = path.with_extension("json.broken");
             // If it cannot be put aside, it is overwritten: nothing in it is worth more than starting.
-            let _ = fs::rename(path, &aside);
+            let _ = files.rename(path, &aside);
             let remedy = WindowRemedyMessage::OldFileIsAside { path: aside.display().to_string() };
             Err(unread(path, Message::error(error), remedy))
         }
@@ -222,6 +228,7 @@ fn sane(mut remembered: Remembered) -> Remembered {
 
 /// Writes on a thread of its own, so that a slow disk does not hold up the window.
 struct Writer {
+    files: Arc<dyn Files>,
     path: Option<PathBuf>,
     sender: Option<Sender<Remembered>>,
     failures: Receiver<Failure>,
@@ -229,21 +236,21 @@ struct Writer {
 }
 
 impl Writer {
-    fn start(path: Option<PathBuf>) -> Self {
+    fn start(files: Arc<dyn Files>, path: Option<PathBuf>) -> Self {
         let (sender, wanted) = bounded::<Remembered>(1);
         let (tell, failures) = bounded(1);
-        let own = path.clone();
+        let (own, disk) = (path.clone(), files.clone());
         let work = move || {
             let Some(path) = own else { return };
             for remembered in wanted {
-                if let Err(failure) = write(&path, &remembered) {
+                if let Err(failure) = write(&*disk, &path, &remembered) {
                     // One sentence is enough; the next one has to wait until it was read.
                     let _ = tell.try_send(failure);
                 }
             }
         };
         let thread = thread::Builder::new().name("window state".to_owned()).spawn(work).ok();
-        Self { path, sender: Some(sender), failures, thread }
+        Self { files, path, sender: Some(sender), failures, thread }
     }
 
     /// False if the one before is still being written.
@@ -268,26 +275,28 @@ impl Writer {
         }
         if let Some(path) = &self.path {
             // There is no window left to say it in.
-            let _ = write(path, remembered);
+            let _ = write(&*self.files, path, remembered);
         }
     }
 }
 
-fn write(path: &Path, remembered: &Remembered) -> Result<(), Failure> {
+fn write(files: &dyn Files, path: &Path, remembered: &Remembered) -> Result<(), Failure> {
     let failed = |error: Message| {
         let remedy = WindowRemedyMessage::CheckFolder;
         Failure::new(WindowActMessage::KeepState, path.display().to_string(), error, remedy)
     };
     let text = serde_json::to_string_pretty(remembered).map_err(|error| failed(Message::error(error)))?;
     if let Some(folder) = path.parent() {
-        fs::create_dir_all(folder).map_err(|error| failed(Message::error(error)))?;
+        files.make_folder(folder).map_err(|error| failed(Message::error(error)))?;
     }
-    replace_file(path, text.as_bytes()).map_err(|error| failed(Message::error(error)))
+    replace(files, path, text.as_bytes()).map_err(|error| failed(Message::error(error)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use brushwork_link::files::{DiskFault, Remains, SimulatedDisk};
+    use std::fs;
 
     fn file() -> (tempfile::TempDir, PathBuf) {
         let folder = tempfile::tempdir().unwrap();
@@ -353,7 +362,35 @@ mod tests {
         let in_the_way = folder.path().join("config");
         fs::write(&in_the_way, "a file where a folder should be").unwrap();
         let reported =
-            write(&in_the_way.join("window.json"), &Remembered::default()).unwrap_err().to_string();
+            write(&Disk, &in_the_way.join("window.json"), &Remembered::default()).unwrap_err().to_string();
         assert!(reported.contains("window.json"), "{reported}");
+    }
+
+    #[test]
+    fn whatever_fails_in_keeping_them_the_preferences_are_the_old_or_the_new_ones_and_it_is_said() {
+        let path = Path::new("/config/window.json");
+        let [old, new] =
+            [100, 130].map(|scale_percent| Remembered { scale_percent, ..Remembered::default() });
+        let mut tried = 0;
+        for fault in DiskFault::ALL {
+            for call in 1.. {
+                let disk = SimulatedDisk::default();
+                write(&disk, path, &old).unwrap();
+                disk.fail_at(call, fault);
+                let kept = write(&disk, path, &new);
+                if disk.calls() < call {
+                    break;
+                }
+                if let Err(failure) = &kept {
+                    assert!(failure.to_string().contains("window.json"), "{failure}");
+                }
+                for remains in Remains::ALL {
+                    let found = read(&disk.after_crash(remains), path).unwrap();
+                    assert!(found == new || kept.is_err() && found == old, "{fault:?} at {call}: {found:?}");
+                    tried += 1;
+                }
+            }
+        }
+        assert!(tried > 100, "{tried}");
     }
 }

@@ -6,7 +6,8 @@ use std::process::Command;
 
 use crate::cli::{DONE, LIMIT, exported, name, program_keeping_in, run};
 use brushwork_child::Program;
-use brushwork_link::settings::{Profile, SettingValue};
+use brushwork_core::keep::{Store, UnitId};
+use brushwork_link::settings::{Act, Journal, Profile, SettingValue};
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_mcp_sim::settings::Settings;
 use brushwork_mcp_wire::models;
@@ -174,4 +175,76 @@ fn what_only_reads_leaves_none() {
         run(&bench.command(&bench.kept(), arguments)).ended_with(DONE);
         assert!(bench.backups().is_empty(), "{arguments:?}");
     }
+}
+
+/// What is kept of the bench's unit, after one write that went well.
+fn kept_of(bench: &Bench) -> (Store, UnitId, Profile) {
+    run(&bench.command(&bench.kept(), &["settings", "write", "motor1.velocity.p=7", "--yes", "-c", "PORT"]))
+        .ended_with(DONE);
+    let backup = bench.backups().pop().expect("there is one");
+    let unit = UnitId {
+        model: backup.subject.model.key.to_owned(),
+        place: backup.unit.clone(),
+        has_serial_number: false,
+        address: backup.address.get(),
+        is_simulated: false,
+    };
+    (Store::at(bench.kept()), unit, backup)
+}
+
+/// Commands that open the unit, whatever they are for.
+const OPENING: [&[&str]; 5] = [
+    &["status", "-c", "PORT"],
+    &["drive", "--duty", "0", "--for", "0.1", "-c", "PORT"],
+    &["settings", "read", "-c", "PORT"],
+    &["settings", "unfinished", "-c", "PORT"],
+    &["firmware", "info", "-c", "PORT"],
+];
+
+#[test]
+fn after_a_cut_write_every_command_that_opens_the_unit_says_so() {
+    let bench = Bench::new("mcp266");
+    let (store, unit, before) = kept_of(&bench);
+    let journal = Journal { act: Act::Write, wanted: before.clone(), before };
+    let path = store.open_journal(&unit, &journal).expect("the folder is ours");
+    for arguments in OPENING {
+        let ran = run(&bench.command(&bench.kept(), arguments));
+        let told = ran.stderr.contains("did not end") || ran.stderr.contains("was cut short");
+        assert!(told || ran.stdout.contains("was cut short"), "{arguments:?}: {ran:#?}");
+    }
+    let mut tuning = Program::spawn(bench.command(&bench.kept(), &["tune", "velocity", "-c", "PORT"]));
+    tuning.wait_for_error("did not end", LIMIT);
+    drop(tuning);
+    // A damaged journal is as much worth a word.
+    std::fs::write(&path, "{").expect("the folder is ours");
+    for arguments in OPENING {
+        let ran = run(&bench.command(&bench.kept(), arguments));
+        assert!(
+            ran.stderr.contains("is damaged") && ran.stderr.contains("may have been cut short"),
+            "{arguments:?}: {ran:#?}"
+        );
+        assert!(!ran.stdout.contains("Nothing that was begun"), "{arguments:?}: {ran:#?}");
+    }
+    run(&bench.command(&bench.kept(), &["settings", "unfinished", "--forget", "-c", "PORT"]))
+        .ended_with(DONE);
+    let settled =
+        run(&bench.command(&bench.kept(), &["settings", "unfinished", "-c", "PORT"])).ended_with(DONE);
+    assert!(settled.stdout.contains("Nothing that was begun"), "{settled:#?}");
+}
+
+#[test]
+fn a_damaged_count_of_saves_is_named_and_the_next_save_says_that_it_was_lost() {
+    let bench = Bench::new("mcp266");
+    let (store, unit, _) = kept_of(&bench);
+    store.count_saves(&unit, 6_000, "2026-01-05").expect("the folder is ours");
+    let file =
+        std::fs::read_dir(bench.kept().join("wear")).unwrap().flatten().next().expect("it is there").path();
+    std::fs::write(&file, "\0\0").expect("the folder is ours");
+    let saved =
+        run(&bench.command(&bench.kept(), &["settings", "save", "--yes", "-c", "PORT"])).ended_with(DONE);
+    assert!(saved.stderr.contains("is damaged") && saved.stderr.contains("is not known"), "{saved:#?}");
+    assert!(saved.stdout.contains("What was counted before is lost"), "{saved:#?}");
+    let again =
+        run(&bench.command(&bench.kept(), &["settings", "save", "--yes", "-c", "PORT"])).ended_with(DONE);
+    assert!(again.stdout.contains("2 saves") && again.stdout.contains("before is lost"), "{again:#?}");
 }

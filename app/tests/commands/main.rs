@@ -8,6 +8,7 @@ mod cli_as_read;
 mod cli_backups;
 mod cli_can;
 mod cli_drive;
+mod cli_ends;
 mod cli_files;
 mod cli_firmware;
 mod cli_profiles;

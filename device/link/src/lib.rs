@@ -13,6 +13,7 @@ pub mod driver;
 pub mod exchange;
 pub mod failure;
 pub mod family;
+pub mod files;
 pub mod guardian;
 pub mod messages;
 pub mod settings;

@@ -33,7 +33,8 @@ pub fn run(args: &ExamineArgs, out: &mut Output, interrupt: &Interrupt) -> Resul
     let examining = Examining::begin(&client.identity).map_err(|sentence| Exit::Refused.saying(sentence))?;
     check_steps(args, &examining)?;
     let unit = UnitId::new(&client.identity, &list_ports().unwrap_or_default());
-    examining.note_raw_writes(Store::of_user().raw_writes(&unit));
+    let raw_writes = Store::of_user().raw_writes(&unit).inspect_err(|fault| say(fault.to_string()));
+    examining.note_raw_writes(raw_writes.unwrap_or_default());
     let mut ended = Ok(());
     for step in examining.steps() {
         ended = ended.and_then(|()| take(step, args, &client, &examining, interrupt));

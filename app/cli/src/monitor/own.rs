@@ -12,6 +12,7 @@ use crate::{Exit, Interrupt, Output, client, say};
 /// Polls and prints what goes over the wire.
 pub fn run(args: &MonitorArgs, out: &mut Output, interrupt: &Interrupt) -> Result<(), Exit> {
     let session = client::open(&args.connect, PollRate::DEFAULT, None)?;
+    interrupt.hold_line();
     // The queue of a thread that has just started has room.
     let _ = session.device.request(Request::Trace(true));
     let start = Instant::now();

@@ -47,6 +47,7 @@ pub fn run(args: &MonitorArgs, out: &mut Output, interrupt: &Interrupt) -> Resul
     let target = client::target(&args.connect)?;
     let (transport, simulation) =
         session::connect(&target, None).map_err(|error| Exit::NoLink.saying(error))?;
+    interrupt.hold_line();
     let (line, place) = server::open(&endpoint).map_err(|error| failed(&error.to_string()))?;
     let (news, received) = bounded(QUEUE);
     let stop = Arc::new(AtomicBool::new(false));

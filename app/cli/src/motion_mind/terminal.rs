@@ -16,6 +16,7 @@ use clap::Args;
 use serde_json::json;
 
 use crate::client::ask;
+use crate::interrupt::meanwhile;
 use crate::{Client, ConnectArgs, Exit, Interrupt, Output, say};
 
 /// How long a reply may take.
@@ -56,15 +57,26 @@ pub fn run(args: &TerminalArgs, out: &mut Output, interrupt: &Interrupt) -> Resu
         mode: facts.mode.to_string(),
         protocol: facts.protocol.to_string(),
     });
-    let lines: Box<dyn Iterator<Item = String>> = match args.commands.is_empty() {
-        true => Box::new(std::io::stdin().lines().map_while(Result::ok)),
-        false => Box::new(args.commands.iter().cloned()),
-    };
+    let mut given = args.commands.iter().cloned();
     let mut failed = false;
-    for (id, line) in (1..).zip(lines) {
+    for id in 1.. {
+        let line = if args.commands.is_empty() { typed(&client, interrupt)? } else { given.next() };
+        let Some(line) = line else { break };
         failed |= !exchange(&line, id, facts, args, &client, out, interrupt)?;
     }
     Ok(if failed { Exit::Refused } else { Exit::Done })
+}
+
+/// The next line of standard input; `None` at its end.
+fn typed(client: &Client, interrupt: &Interrupt) -> Result<Option<String>, Exit> {
+    let read = || std::io::stdin().lines().next()?.ok();
+    let breathe = || {
+        if let Some(Event::Failure(failure)) = client.next_event(interrupt)? {
+            say(failure.to_string());
+        }
+        Ok(())
+    };
+    Ok(meanwhile(read, &breathe)?.flatten())
 }
 
 /// Sends one command; whether it went out.

@@ -3,9 +3,8 @@
 use crate::messages::CliSettingsMessage;
 use std::io::{self, BufRead as _, IsTerminal as _, Write as _};
 
-use crossbeam_channel::{TryRecvError, bounded};
-
 use super::controller::Controller;
+use crate::interrupt::meanwhile;
 use crate::{Exit, say};
 
 /// Returns when `question` was answered with yes, here or by `--yes` beforehand.
@@ -33,29 +32,18 @@ pub fn agreed_while(question: &str, yes: bool, breathe: &dyn Fn() -> Result<(), 
     if is_yes(&line(&breathe)?) { Ok(()) } else { Err(Exit::Refused.saying(CliSettingsMessage::NotWritten)) }
 }
 
-/// One line from the terminal. It is read on a thread of its own, since reading cannot be called off; `breathe` is called
-/// meanwhile and can end the waiting.
+/// One line from the terminal; `breathe` is called meanwhile and can end the waiting.
 ///
 /// # Errors
 /// What `breathe` said, or that nobody can be asked.
 pub fn line(breathe: &dyn Fn() -> Result<(), Exit>) -> Result<String, Exit> {
-    let (sender, receiver) = bounded(1);
-    let reader = std::thread::Builder::new().name("answer".to_owned()).spawn(move || {
+    let read = || {
         let mut line = String::new();
         // Standard input that cannot be read gives no yes.
         let _ = io::stdin().lock().read_line(&mut line);
-        let _ = sender.send(line);
-    });
-    if let Err(error) = reader {
-        return Err(Exit::Failed.saying(CliSettingsMessage::NotAsked { error: error.to_string() }));
-    }
-    loop {
-        match receiver.try_recv() {
-            Ok(line) => return Ok(line),
-            Err(TryRecvError::Disconnected) => return Ok(String::new()),
-            Err(TryRecvError::Empty) => breathe()?,
-        }
-    }
+        line
+    };
+    Ok(meanwhile(read, breathe)?.unwrap_or_default())
 }
 
 /// Whether a line says yes.

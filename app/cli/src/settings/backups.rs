@@ -7,13 +7,13 @@ use super::args::{BackupsArgs, RestoreArgs, WriteHow};
 use super::controller::Controller;
 use super::write;
 use crate::{Exit, Interrupt, Output, say};
-use brushwork_core::keep::{Backup, Store};
+use brushwork_core::keep::{Backup, Store, UnitId};
 use brushwork_link::settings::OpenedProfile;
 
 /// Lists the backups of every unit; no controller is needed.
 pub fn list(args: &BackupsArgs, out: &mut Output) -> Result<Exit, Exit> {
     let store = Store::of_user();
-    let backups = store.backups(None);
+    let backups = listed(&store, None)?;
     if args.json {
         let list: Vec<_> = backups
             .iter()
@@ -48,7 +48,7 @@ pub fn restore(args: &RestoreArgs, out: &mut Output, interrupt: &Interrupt) -> R
     let backup = match &args.name {
         Some(name) => find(name)?,
         None => {
-            let newest = Store::of_user().backups(Some(&controller.unit)).into_iter().next();
+            let newest = listed(&Store::of_user(), Some(&controller.unit))?.into_iter().next();
             newest.ok_or_else(|| Exit::Refused.saying(CliSettingsMessage::NoBackupOfThis))?
         }
     };
@@ -70,10 +70,21 @@ fn open(backup: &Backup) -> Result<OpenedProfile, Exit> {
     Ok(opened)
 }
 
+/// The backups of a unit, or of all, newest first.
+///
+/// # Errors
+/// Their folder cannot be read, which is said.
+pub fn listed(store: &Store, unit: Option<&UnitId>) -> Result<Vec<Backup>, Exit> {
+    if store.root().is_none() {
+        return Ok(Vec::new());
+    }
+    store.listed_backups(unit).map_err(|fault| Exit::Failed.saying(fault))
+}
+
 /// The backup of that name, or the only one whose name begins so.
 pub fn find(name: &str) -> Result<Backup, Exit> {
     let name = name.trim_end_matches(".json");
-    let all = Store::of_user().backups(None);
+    let all = listed(&Store::of_user(), None)?;
     let mut found = all.iter().filter(|backup| backup.begins_with(name));
     match (all.iter().find(|backup| backup.name == name), found.next(), found.next()) {
         (Some(exact), ..) => Ok(exact.clone()),

@@ -9,6 +9,7 @@ use super::controller::Controller;
 use super::diff::{self, Side};
 use super::side_name::SideName;
 use super::{backups, profile};
+use crate::interrupt::meanwhile;
 use crate::{Exit, Interrupt, Output, say};
 use brushwork_core::keep::{Store, today};
 use brushwork_core::settings::{eeprom_title, known_defaults};
@@ -40,11 +41,20 @@ pub fn run(args: &CompareArgs, out: &mut Output, interrupt: &Interrupt) -> Resul
 
 fn side(name: &SideName, controller: Option<&Controller<'_>>, other: Option<Side>) -> Result<Side, Exit> {
     match (name, controller) {
-        (SideName::File(path), _) => Ok(Side::new(path.display().to_string(), opened(profile::open(path)?))),
+        (SideName::File(path), _) => {
+            // Where a controller is connected too, a pipe that never ends must not keep Ctrl-C away.
+            let own = path.clone();
+            let read = move || profile::open(&own);
+            let profile = match controller {
+                Some(controller) => meanwhile(read, &|| controller.breathe())?.ok_or(Exit::Failed)?,
+                None => read(),
+            }?;
+            Ok(Side::new(path.display().to_string(), opened(profile)))
+        }
         (SideName::Backup(Some(name)), _) => backup(name),
         (SideName::Backup(None), Some(controller)) => {
             let store = Store::of_user();
-            let newest = store.backups(Some(&controller.unit)).into_iter().next();
+            let newest = backups::listed(&store, Some(&controller.unit))?.into_iter().next();
             let newest = newest.ok_or_else(|| Exit::Refused.saying(CliSettingsMessage::NoBackup))?;
             backup(&newest.name)
         }
@@ -54,7 +64,7 @@ fn side(name: &SideName, controller: Option<&Controller<'_>>, other: Option<Side
             Ok(Side::new(name, controller.profile_of(&report)))
         }
         (SideName::Eeprom, Some(controller)) => {
-            let known = Store::of_user().eeprom(&controller.unit);
+            let known = super::memory::known_eeprom(&controller.unit);
             let known = known.ok_or_else(|| Exit::Refused.saying(SideMessage::EepromUnknown))?;
             Ok(Side::new(eeprom_title(&known), known))
         }

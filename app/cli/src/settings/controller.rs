@@ -55,7 +55,7 @@ impl<'i> Controller<'i> {
         running: Option<Arc<Simulation>>,
         interrupt: &'i Interrupt,
     ) -> Result<Self, Exit> {
-        let client = Client::connect_to(args, PollRate::Off, running, interrupt)?;
+        let client = Client::connect_untold(args, PollRate::Off, running, interrupt)?;
         let version = &client.identity.version_text;
         let Some(subject) = client.identity.subject() else {
             return Err(Exit::Refused.saying(CliSettingsMessage::UnknownModel {
@@ -67,6 +67,11 @@ impl<'i> Controller<'i> {
         // Without a list of ports a unit is told by the name of its port.
         let unit = UnitId::new(&client.identity, &list_ports().unwrap_or_default());
         Ok(Self { client, interrupt, subject, keeping: Keeping::new(Store::of_user()), unit })
+    }
+
+    /// Says what was begun on the controller and did not end, for commands that do not read its settings.
+    pub fn announce(&self) {
+        cut_short::announce(&self.unit, &self.identity().port);
     }
 
     /// Who it is.
@@ -160,6 +165,7 @@ impl<'i> Controller<'i> {
         })?;
         let JobReport { name, ending, .. } =
             work::wait(&self.client, &ticket, limit, Moves::No, self.interrupt)?;
+        self.keeping.take_faults().iter().for_each(|fault| say(fault.to_string()));
         let broken = work::value(ending, &name, Exit::Failed, self.interrupt).err();
         match (ticket.take(), broken) {
             (Some(value), broken) => Ok(Finished { value, broken }),

@@ -1,7 +1,7 @@
 //! What acts that were cut short have left on a controller, told whenever its settings were read.
 
 use crate::messages::CliSettingsMessage;
-use brushwork_link::settings::ReadReport;
+use brushwork_link::settings::{Act, ReadReport};
 
 use crate::output::say;
 use brushwork_core::keep::{OpenJournal, Store, UnitId, aftermaths};
@@ -25,6 +25,19 @@ pub fn tell(unit: &UnitId, ram: &ReadReport) {
     }
     if !journals.is_empty() {
         say(CliSettingsMessage::SeeUnfinished);
+    }
+}
+
+/// Says on standard error that something which was begun on a unit did not end, for commands that do not read its settings.
+pub fn announce(unit: &UnitId, port: &str) {
+    for open in journals(unit) {
+        let (act, begun, port) = (open.journal.act, open.journal.begun(), port.to_owned());
+        say(match act {
+            Act::Trial => CliSettingsMessage::NotGivenBack { begun, port },
+            Act::Write | Act::Save | Act::Defaults | Act::Reload | Act::Firmware => {
+                CliSettingsMessage::DidNotEnd { act: act.label(), begun, port }
+            }
+        });
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::messages::CliActMessage;
 use crate::messages::CliSettingsMessage;
 use brushwork_core::messages::CoreActMessage;
-use brushwork_link::settings::{DefaultsReport, SaveReport, SaveVerdict, SettingsTable};
+use brushwork_link::settings::{DefaultsReport, Profile, SaveReport, SaveVerdict, SettingsTable};
 use serde_json::json;
 
 use super::args::MemoryArgs;
@@ -19,7 +19,7 @@ pub fn save(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Resul
     let controller = Controller::connect(&args.connect, interrupt)?;
     let ram = controller.read()?;
     let list = changes(&ram.table, &known_defaults(&ram.table, &ram.image), &ram.image);
-    match Store::of_user().eeprom(&controller.unit) {
+    match known_eeprom(&controller.unit) {
         Some(known) => {
             let head = format!("What would change in EEPROM, as known since {}:", known.date_text());
             let unsaved = changes(&ram.table, &known.settings, &merged(&known.settings, &ram.image));
@@ -40,6 +40,7 @@ pub fn save(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Resul
     ask::agreed(&question, args.yes, &controller)?;
     let (report, exit) = save_to_eeprom(&controller, &ram.table)?;
     let wear = Store::of_user().wear(&controller.unit);
+    let wear = wear.inspect_err(|fault| say(fault.to_string())).ok();
     if args.json {
         out.json(&json!({
             "identity": controller.identity(),
@@ -49,7 +50,7 @@ pub fn save(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Resul
         }))?;
     } else if matches!(report.verdict, SaveVerdict::Verified | SaveVerdict::Stored) {
         out.line(report.sentence())?;
-        out.line(wear.sentence())?;
+        wear.map_or(Ok(()), |wear| out.line(wear.sentence()))?;
     }
     if !matches!(report.verdict, SaveVerdict::Verified | SaveVerdict::Stored) {
         say(report.sentence());
@@ -143,7 +144,7 @@ fn tell_defaults(
 pub fn reload(args: &MemoryArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let controller = Controller::connect(&args.connect, interrupt)?;
     let ram = controller.read()?;
-    match Store::of_user().eeprom(&controller.unit) {
+    match known_eeprom(&controller.unit) {
         Some(known) => {
             let head = format!("What comes back, as EEPROM is known since {}:", known.date_text());
             let list = changes(&ram.table, &ram.image, &merged(&ram.image, &known.settings));
@@ -190,10 +191,18 @@ const AT_DEFAULT: &str = "nothing: every setting is at its default";
 
 /// Says how often the EEPROM was written where that begins to matter.
 pub fn tell_wear(unit: &UnitId) {
-    let wear = Store::of_user().wear(unit);
-    if wear.level() > WearLevel::Fine {
-        say(CliSettingsMessage::Wear { wear: wear.sentence(), limits: unit.limits() });
+    match Store::of_user().wear(unit) {
+        Ok(wear) if wear.level() > WearLevel::Fine => {
+            say(CliSettingsMessage::Wear { wear: wear.sentence(), limits: unit.limits() });
+        }
+        Ok(_) => {}
+        Err(fault) => say(CliSettingsMessage::WearLost { fault: fault.to_string() }),
     }
+}
+
+/// What the unit's EEPROM held when that was proven last; a note that cannot be read is named and counts as none.
+pub fn known_eeprom(unit: &UnitId) -> Option<Profile> {
+    Store::of_user().eeprom(unit).inspect_err(|fault| say(fault.to_string())).ok().flatten()
 }
 
 fn show(

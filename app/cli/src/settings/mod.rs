@@ -9,7 +9,7 @@ pub mod backups;
 mod compare;
 pub(super) mod controller;
 mod copy;
-mod cut_short;
+pub(super) mod cut_short;
 mod diff;
 mod keys;
 pub(super) mod memory;

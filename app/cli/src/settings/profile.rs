@@ -19,12 +19,14 @@ pub fn export(args: &ExportArgs, out: &mut Output, interrupt: &Interrupt) -> Res
     let report = controller.read()?;
     let profile = controller.profile_of(&report);
     file.write(profile.to_json().as_bytes()).map_err(|error| match error {
-        NewFileError::System { path, source } => {
+        NewFileError::System { path, source } if source.kind() != std::io::ErrorKind::Interrupted => {
             Exit::Failed.saying(ProfileFileError::Write { path, source }.to_string())
         }
         refused @ (NewFileError::Exists { .. }
+        | NewFileError::Link { .. }
         | NewFileError::OwnInput { .. }
-        | NewFileError::Folder { .. }) => refused.into(),
+        | NewFileError::Folder { .. }
+        | NewFileError::System { .. }) => refused.into(),
     })?;
     let count = counted(profile.settings.len());
     out.line(format!("{count} of {} are in {}.", controller.describe(), args.file.display()))?;

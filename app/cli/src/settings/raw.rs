@@ -24,7 +24,7 @@ pub fn run(args: &RawArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Ex
     let store = Store::of_user();
     let number = match &args.number {
         Some(number) => number.clone(),
-        None => newest(&store.raw_writes(&controller.unit))?,
+        None => newest(&store.raw_writes(&controller.unit).map_err(|fault| Exit::Failed.saying(fault))?)?,
     };
     let table = ram.table.at_owners_word(&number.key).map_err(|why| Exit::NotTaken.saying(why))?;
     let ram = ReadReport { table, ..ram };

@@ -5,23 +5,30 @@ use serde_json::json;
 
 use super::args::UnfinishedArgs;
 use super::controller::Controller;
-use super::cut_short::journals;
 use super::write::{self, Wanted};
-use crate::{Exit, Interrupt, Output};
-use brushwork_core::keep::{OpenJournal, Store, aftermaths};
+use crate::{Exit, Interrupt, Output, say};
+use brushwork_core::keep::{KeepError, OpenJournal, Store, aftermaths};
 use brushwork_core::settings::remedy;
 
 /// Shows what was cut short, and settles it when asked to.
 pub fn run(args: &UnfinishedArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let controller = Controller::connect(&args.connect, interrupt)?;
     let ram = controller.read_quietly()?;
-    let journals = journals(&controller.unit);
+    let store = Store::of_user();
+    let (journals, damaged) = store.open_journals(&controller.unit);
+    damaged.iter().for_each(|fault| say(fault.to_string()));
     let aftermaths = aftermaths(&journals, &ram.table, &ram.image);
-    show(args, &ram, &aftermaths, out)?;
+    show(args, &ram, &aftermaths, &damaged, out)?;
     // The newest alone is finished or undone; the ones before it were overtaken by it.
-    let Some(newest) = journals.last() else { return Ok(Exit::Done) };
+    if args.forget {
+        store.put_damaged_journals_aside(&damaged).map_err(|error| Exit::Failed.saying(error))?;
+        return close(&journals);
+    }
+    let Some(newest) = journals.last() else {
+        return Ok(if damaged.is_empty() { Exit::Done } else { Exit::Different });
+    };
     if !args.finish && !args.undo {
-        return if args.forget { close(&journals) } else { Ok(Exit::Different) };
+        return Ok(Exit::Different);
     }
     let is_simulated = controller.identity().simulated;
     let wanted = Wanted::read(remedy(&newest.journal, &ram.table, &ram.image, args.undo, is_simulated));
@@ -39,6 +46,7 @@ fn show(
     args: &UnfinishedArgs,
     ram: &ReadReport,
     aftermaths: &[Aftermath],
+    damaged: &[KeepError],
     out: &mut Output,
 ) -> Result<(), Exit> {
     if args.json {
@@ -54,7 +62,7 @@ fn show(
             .collect();
         return Ok(out.json(&list)?);
     }
-    if aftermaths.is_empty() {
+    if aftermaths.is_empty() && damaged.is_empty() {
         out.line("Nothing that was begun on this controller was cut short.")?;
     }
     for aftermath in aftermaths {

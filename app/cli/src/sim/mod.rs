@@ -110,6 +110,7 @@ fn serve(
     let mut truth = args.truth.as_deref().map(|path| truth_file(path, args));
     truth.as_ref().map_or(Ok(()), NewFile::check)?;
     let server = &start(args, line)?;
+    interrupt.hold_line();
     let place = server.address();
     let greeting = match args.can {
         Some(form) => {

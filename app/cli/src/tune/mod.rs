@@ -54,6 +54,7 @@ fn tune(args: &RunArgs, method: Method, out: &mut Output, interrupt: &Interrupt)
         Ok(controller) => controller,
         Err(exit) => return exit,
     };
+    controller.announce();
     let mut report = None;
     let ended = session(args, method, &controller, &mut report, interrupt);
     // What an interrupted run has seen is kept too.

@@ -1,15 +1,15 @@
 //! Backups: one profile for each act that changes settings, named by number, date and reason, kept within bounds.
 
 use std::collections::BTreeSet;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 use brushwork_link::Identity;
+use brushwork_link::files::{Disk, Files};
 use brushwork_link::settings::{Act, OpenedProfile, Profile, ReadReport, Strictness};
 
 use super::sequence;
-use super::store::{KeepError, Store};
+use super::store::{KeepError, Record, Store};
 use super::unit::{UnitId, profile_of};
 
 const FOLDER: &str = "backups";
@@ -62,8 +62,24 @@ impl Backup {
 
     /// What it holds.
     pub fn open(&self) -> Result<OpenedProfile, KeepError> {
-        Profile::open(&self.path, Strictness::Repair)
-            .map_err(|error| KeepError::Read { path: self.path.clone(), what: error.to_string() })
+        self.open_on(&Disk)
+    }
+}
+
+impl Backup {
+    /// What it holds, on a disk of choice.
+    pub(super) fn open_on(&self, files: &dyn Files) -> Result<OpenedProfile, KeepError> {
+        let (record, path) = (Record::Backup, self.path.clone());
+        let text = files.read(&path).map_err(|error| KeepError::Read {
+            record,
+            path: path.clone(),
+            what: error.to_string(),
+        })?;
+        Profile::read(&text, Strictness::Repair).map_err(|error| KeepError::Damaged {
+            record,
+            path,
+            what: error.to_string(),
+        })
     }
 }
 
@@ -101,40 +117,59 @@ impl Store {
     ) -> Result<Backup, KeepError> {
         let rest = format!("{}-before-{}", stamp(clock), act.label().replace(' ', "-"));
         let folder = unit.file_name();
-        let lock = sequence::lock(&self.path(&[LOCK])?);
+        let lock = sequence::lock(self.files(), &self.path(&[LOCK])?);
         // One sequence for all units, so that a number names one backup.
-        let all = self.backups(None);
+        let all = self.listed_backups(None)?;
         let mut number = sequence::next(all.iter().map(|backup| backup.name.as_str()));
         let path_of =
             |number| self.path(&[FOLDER, &folder, &format!("{}.json", sequence::numbered(number, &rest))]);
         let mut path = path_of(number)?;
-        while path.exists() {
+        while self.files().read(&path).is_ok() {
             number += 1;
             path = path_of(number)?;
         }
-        self.put(&path, &profile.to_json())?;
+        self.put(Record::Backup, &path, &profile.to_json())?;
         self.thin(unit, &path);
         drop(lock);
-        Backup::new(path.clone())
-            .ok_or_else(|| KeepError::Read { path, what: "its name is not readable".to_owned() })
+        Backup::new(path.clone()).ok_or_else(|| KeepError::Read {
+            record: Record::Backup,
+            path,
+            what: "its name is not readable".to_owned(),
+        })
+    }
+
+    /// The backups of a unit, or of all units; newest first. None where they cannot be listed: see [`Store::listed_backups`].
+    pub fn backups(&self, unit: Option<&UnitId>) -> Vec<Backup> {
+        self.listed_backups(unit).unwrap_or_default()
     }
 
     /// The backups of a unit, or of all units; newest first.
-    pub fn backups(&self, unit: Option<&UnitId>) -> Vec<Backup> {
-        let folders = unit.map_or_else(|| self.backup_folders(), |unit| vec![unit.file_name()]);
-        let files = folders.iter().flat_map(|folder| self.files(&[FOLDER, folder]));
-        let mut backups: Vec<Backup> = files.filter_map(Backup::new).collect();
+    ///
+    /// # Errors
+    /// A folder cannot be read: there may be backups that nobody sees.
+    pub fn listed_backups(&self, unit: Option<&UnitId>) -> Result<Vec<Backup>, KeepError> {
+        let folders = match unit {
+            Some(unit) => vec![unit.file_name()],
+            None => self.backup_folders()?,
+        };
+        let mut backups = Vec::new();
+        for folder in folders {
+            backups
+                .extend(self.list(Record::Backup, &[FOLDER, &folder])?.into_iter().filter_map(Backup::new));
+        }
         backups.sort_by(|left, right| right.order().cmp(&left.order()));
-        backups
+        Ok(backups)
     }
 
-    fn backup_folders(&self) -> Vec<String> {
-        let Ok(entries) = self.path(&[FOLDER]).and_then(|path| {
-            fs::read_dir(&path).map_err(|source| KeepError::Read { path, what: source.to_string() })
-        }) else {
-            return Vec::new();
-        };
-        entries.flatten().filter_map(|entry| entry.file_name().into_string().ok()).collect()
+    fn backup_folders(&self) -> Result<Vec<String>, KeepError> {
+        let entries = self.entries(Record::Backup, &self.path(&[FOLDER])?)?;
+        let name = |path: &PathBuf| Some(path.file_name()?.to_str()?.to_owned());
+        // A file that somebody has put among the folders is none of them.
+        Ok(entries
+            .iter()
+            .filter(|path| path.extension().is_none_or(|end| end != "json"))
+            .filter_map(name)
+            .collect())
     }
 
     /// Removes what is too much of a unit, never the file that was just made.
@@ -146,7 +181,7 @@ impl Store {
         for backup in backups.iter().filter(|backup| backup.path != just_made) {
             if !kept.contains(&backup.name) {
                 // One backup too many harms nothing; the next time it is tried again.
-                let _ = fs::remove_file(&backup.path);
+                let _ = self.take_away(Record::Backup, &backup.path);
             }
         }
     }

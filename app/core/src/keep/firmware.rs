@@ -1,12 +1,11 @@
 //! What firmware is known to answer, kept by what it calls itself: models and versions differ in their commands, boards of one version do not.
 
-use std::fs;
 use std::path::PathBuf;
 
 use brushwork_link::capability::{CapabilityMap, KeepsCapabilities};
 use serde::{Deserialize, Serialize};
 
-use super::store::Store;
+use super::store::{Record, Store};
 
 const CAPABILITIES: &str = "capabilities";
 /// Longer names of files are cut; the text inside tells two that agree so far apart.
@@ -20,8 +19,9 @@ struct Kept {
 
 impl KeepsCapabilities for Store {
     fn load(&self, firmware: &str) -> CapabilityMap {
-        let text = self.firmware_path(firmware).and_then(|path| fs::read_to_string(path).ok());
-        let kept: Option<Kept> = text.and_then(|text| serde_json::from_str(&text).ok());
+        let path = self.firmware_path(firmware);
+        // What a damaged file said is learned again, which takes a second.
+        let kept: Option<Kept> = path.and_then(|path| self.json(Record::Capabilities, &path).ok()?);
         // Two texts may share a name of a file.
         kept.filter(|kept| kept.firmware == firmware).map(|kept| kept.answers).unwrap_or_default()
     }
@@ -33,7 +33,7 @@ impl KeepsCapabilities for Store {
             return;
         };
         // What is not kept is learned again, which takes a second.
-        drop(self.put(&path, &text));
+        drop(self.put(Record::Capabilities, &path, &text));
     }
 }
 
@@ -49,6 +49,7 @@ impl Store {
 mod tests {
     use super::*;
     use brushwork_link::capability::CapabilityBook;
+    use std::fs;
     use std::sync::Arc;
     use std::time::Duration;
 

@@ -1,13 +1,12 @@
 //! What is known of a unit's EEPROM: its content as last proven, and how often it was written from here.
 
 use brushwork_link::Message;
-use std::fs;
 use std::path::PathBuf;
 
 use brushwork_link::settings::Profile;
 use serde::{Deserialize, Serialize};
 
-use super::store::{KeepError, Store};
+use super::store::{KeepError, Record, Store};
 use super::unit::{OWNER, UnitId};
 use crate::examine::RawWrite;
 use crate::messages::WearMessage;
@@ -29,6 +28,14 @@ pub struct Wear {
     pub saves: u64,
     /// The date of the first of them.
     pub since: String,
+    /// Whether saves were counted before that, in a file that was damaged.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub earlier_lost: bool,
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "as serde asks")]
+fn is_false(value: &bool) -> bool {
+    !value
 }
 
 /// How near an EEPROM is to its end.
@@ -47,7 +54,7 @@ impl Wear {
     pub fn level(&self) -> WearLevel {
         match self.saves {
             saves if saves >= ENDURANCE => WearLevel::Worn,
-            saves if saves >= ENDURANCE / 2 => WearLevel::Half,
+            saves if saves >= ENDURANCE / 2 || self.earlier_lost => WearLevel::Half,
             _ => WearLevel::Fine,
         }
     }
@@ -62,6 +69,7 @@ impl Wear {
         };
         match self.level() {
             WearLevel::Fine => count.into(),
+            WearLevel::Half if self.earlier_lost => WearMessage::EarlierLost { count: count.into() }.into(),
             WearLevel::Half => WearMessage::Half { count: count.into(), endurance: ENDURANCE }.into(),
             WearLevel::Worn => WearMessage::Worn { count: count.into(), endurance: ENDURANCE }.into(),
         }
@@ -75,7 +83,7 @@ impl Store {
     }
 
     /// Keeps something of a unit's memory, and forgets the memories of simulated units that are gone.
-    fn put_memory(&self, kind: &str, unit: &UnitId, text: &str) -> Result<(), KeepError> {
+    fn put_memory(&self, record: Record, kind: &str, unit: &UnitId, text: &str) -> Result<(), KeepError> {
         if unit.is_simulated {
             let is_gone = |path: &PathBuf| {
                 let name =
@@ -83,60 +91,89 @@ impl Store {
                 name.starts_with(OWNER) && !name.starts_with(&unit.owner())
             };
             // What stays is a few bytes.
-            self.files(&[kind])
+            self.list(record, &[kind])
+                .unwrap_or_default()
                 .iter()
                 .filter(|path| is_gone(path))
-                .for_each(|path| drop(fs::remove_file(path)));
+                .for_each(|path| drop(self.take_away(record, path)));
         }
-        self.put(&self.memory_path(kind, unit)?, text)
+        self.put(record, &self.memory_path(kind, unit)?, text)
     }
 
-    /// How often the unit's EEPROM was written. A file that cannot be read counts as none.
-    pub fn wear(&self, unit: &UnitId) -> Wear {
-        let text = self.memory_path(WEAR, unit).ok().and_then(|path| fs::read_to_string(path).ok());
-        text.and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default()
+    /// How often the unit's EEPROM was written.
+    ///
+    /// # Errors
+    /// Its file is damaged or cannot be read, so that nobody knows.
+    pub fn wear(&self, unit: &UnitId) -> Result<Wear, KeepError> {
+        Ok(self.json(Record::Wear, &self.memory_path(WEAR, unit)?)?.unwrap_or_default())
     }
 
-    /// Counts saves, or takes back those that were not carried out.
+    /// Counts saves, or takes back those that were not carried out. A damaged file is put aside, and the new count says so.
+    ///
+    /// # Errors
+    /// It cannot be kept.
     pub fn count_saves(&self, unit: &UnitId, by: i64, today: &str) -> Result<Wear, KeepError> {
-        let mut wear = self.wear(unit);
+        let mut wear = match self.wear(unit) {
+            Err(KeepError::Damaged { record, path, .. }) => {
+                self.put_aside(record, &path)?;
+                Wear { earlier_lost: true, ..Wear::default() }
+            }
+            known => known?,
+        };
         wear.saves = wear.saves.saturating_add_signed(by);
         if wear.since.is_empty() {
             today.clone_into(&mut wear.since);
         }
         let text = serde_json::to_string_pretty(&wear).unwrap_or_default();
-        self.put_memory(WEAR, unit, &text)?;
+        self.put_memory(Record::Wear, WEAR, unit, &text)?;
         Ok(wear)
     }
 
-    /// The numbers that were written to the unit raw from this computer, oldest first. A file that cannot be read counts as none.
-    pub fn raw_writes(&self, unit: &UnitId) -> Vec<RawWrite> {
-        let text = self.memory_path(RAW, unit).ok().and_then(|path| fs::read_to_string(path).ok());
-        text.and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default()
+    /// The numbers that were written to the unit raw from this computer, oldest first.
+    ///
+    /// # Errors
+    /// Their file is damaged or cannot be read.
+    pub fn raw_writes(&self, unit: &UnitId) -> Result<Vec<RawWrite>, KeepError> {
+        Ok(self.json(Record::RawWrites, &self.memory_path(RAW, unit)?)?.unwrap_or_default())
     }
 
-    /// Notes one more.
+    /// Notes one more. A damaged file is put aside.
     ///
     /// # Errors
     /// It cannot be kept.
     pub fn note_raw_write(&self, unit: &UnitId, write: RawWrite) -> Result<(), KeepError> {
-        let mut writes = self.raw_writes(unit);
+        let mut writes = match self.raw_writes(unit) {
+            Err(KeepError::Damaged { record, path, .. }) => {
+                self.put_aside(record, &path)?;
+                Vec::new()
+            }
+            known => known?,
+        };
         writes.push(write);
         writes.drain(..writes.len().saturating_sub(MOST_RAW_WRITES));
         let text = serde_json::to_string_pretty(&writes).unwrap_or_default();
-        self.put_memory(RAW, unit, &text)
+        self.put_memory(Record::RawWrites, RAW, unit, &text)
     }
 
     /// What the unit's EEPROM held when that was proven last, with the date.
-    pub fn eeprom(&self, unit: &UnitId) -> Option<Profile> {
-        Profile::load(&self.memory_path(EEPROM, unit).ok()?).ok()
+    ///
+    /// # Errors
+    /// The note is damaged or cannot be read.
+    pub fn eeprom(&self, unit: &UnitId) -> Result<Option<Profile>, KeepError> {
+        let path = self.memory_path(EEPROM, unit)?;
+        let Some(text) = self.text(Record::Eeprom, &path)? else { return Ok(None) };
+        Profile::parse(&text).map(Some).map_err(|error| KeepError::Damaged {
+            record: Record::Eeprom,
+            path,
+            what: error.to_string(),
+        })
     }
 
     /// What the unit's EEPROM holds is known, or (`None`) not any more.
     pub fn note_eeprom(&self, unit: &UnitId, profile: Option<&Profile>) -> Result<(), KeepError> {
         match profile {
-            Some(profile) => self.put_memory(EEPROM, unit, &profile.to_json()),
-            None => self.close_journal(&self.memory_path(EEPROM, unit)?),
+            Some(profile) => self.put_memory(Record::Eeprom, EEPROM, unit, &profile.to_json()),
+            None => self.take_away(Record::Eeprom, &self.memory_path(EEPROM, unit)?),
         }
     }
 }
@@ -147,11 +184,14 @@ mod tests {
 
     #[test]
     fn the_warning_comes_before_the_wear() {
-        let wear = |saves| Wear { saves, since: "2026-01-05".to_owned() };
+        let wear = |saves| Wear { saves, since: "2026-01-05".to_owned(), earlier_lost: false };
         assert_eq!(wear(0).sentence(), "No save to this EEPROM was counted yet.");
         assert_eq!(wear(4999).sentence(), "4999 saves to this EEPROM were counted since 2026-01-05.");
         assert_eq!(wear(5000).level(), WearLevel::Half);
         assert!(wear(5000).sentence().to_string().contains("half worn"));
         assert!(wear(10_000).sentence().to_string().contains("worn out"));
+        let lost = Wear { earlier_lost: true, ..wear(3) };
+        assert_eq!(lost.level(), WearLevel::Half);
+        assert!(lost.sentence().to_string().contains("before is lost"), "{}", lost.sentence());
     }
 }

@@ -21,7 +21,7 @@ mod worker;
 pub use backups::Backup;
 pub use journals::{OpenJournal, aftermaths};
 pub use memory::{Wear, WearLevel};
-pub use store::{KeepError, Store};
+pub use store::{KeepError, Record, Store};
 pub use today::today;
 pub use trial::TrialKeeper;
 pub use unit::{UnitId, profile_of};

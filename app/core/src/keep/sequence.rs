@@ -3,10 +3,12 @@
 //!
 //! Version 0.1 named files by the date alone; those come before all that have a number, by their date.
 
-use std::fs::{self, File, TryLockError};
-use std::path::{Path, PathBuf};
+use std::fs::{File, TryLockError};
+use std::path::Path;
 use std::thread;
 use std::time::Duration;
+
+use brushwork_link::files::Files;
 
 /// Digits of a number at least: more than the four of the year with which names of version 0.1 begin.
 const DIGITS: usize = 6;
@@ -42,9 +44,9 @@ pub(super) fn stem(path: &Path) -> &str {
 
 /// Keeps other programs, and other threads of this one, from taking a number until it is dropped. Where the file system has no
 /// locks, or somebody holds this one too long, two files may get the same number: they are ordered by date then.
-pub(super) fn lock(path: &PathBuf) -> Option<File> {
-    fs::create_dir_all(path.parent()?).ok()?;
-    let file = File::options().create(true).truncate(false).write(true).open(path).ok()?;
+pub(super) fn lock(files: &dyn Files, path: &Path) -> Option<File> {
+    files.make_folder(path.parent()?).ok()?;
+    let file = files.open_lock(path).ok()??;
     for _ in 0..TRIES {
         match file.try_lock() {
             Ok(()) => return Some(file),

@@ -11,6 +11,8 @@ use brushwork_mcp_wire::packet_serial::Generation;
 
 use super::*;
 
+mod faults;
+
 fn table() -> SettingsTable {
     brushwork_link::install(&[&McpDriver]);
     SettingsTable::new(subject(models::lookup("mcp266").expect("it is listed"), Generation::Gen1))
@@ -82,8 +84,8 @@ fn a_save_is_counted_and_what_eeprom_holds_is_known_only_once_it_is_proven() {
         begin(&mut *keeper, entry(Act::Save, image.clone())).unwrap();
         keeper.end(ending.clone());
         drop((keeper, keeping));
-        assert_eq!(store.wear(&unit()).saves, saves, "{ending:?}");
-        assert_eq!(store.eeprom(&unit()).is_some(), is_known, "{ending:?}");
+        assert_eq!(store.wear(&unit()).unwrap().saves, saves, "{ending:?}");
+        assert_eq!(store.eeprom(&unit()).unwrap().is_some(), is_known, "{ending:?}");
     }
     assert_eq!(store.open_journals(&unit()).0.len(), 1, "the one that was left open");
 }
@@ -160,8 +162,14 @@ fn numbered_profile(number: i64) -> Profile {
 }
 
 fn number_of(backup: &Backup) -> i64 {
-    match backup.open().unwrap().profile.settings.get("motor1.velocity.qpps") {
+    number_of_profile(&backup.open().unwrap().profile)
+}
+
+/// 0 where there is none.
+fn number_of_profile(profile: &Profile) -> i64 {
+    match profile.settings.get("motor1.velocity.qpps") {
         Some(SettingValue::Int(number)) => number,
+        None => 0,
         other => panic!("{other:?}"),
     }
 }
@@ -231,4 +239,57 @@ fn the_newest_journal_is_the_one_begun_last_whatever_the_clock_shows() {
     let (journals, faults) = store.open_journals(&unit());
     assert_eq!((journals.len(), faults.len()), (2, 0));
     assert_eq!(journals[1].journal.act, Act::Trial);
+}
+
+#[test]
+fn damaged_files_of_a_unit_are_named_and_never_count_as_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::at(folder.path());
+    let name = format!("{}.json", unit().file_name());
+    for kind in ["wear", "eeprom", "raw"] {
+        fs::create_dir_all(folder.path().join(kind)).unwrap();
+    }
+    for text in [&b""[..], b"{", b"\0\0\0\0", b"[1]", b"\xFF\xFE"] {
+        for kind in ["wear", "eeprom", "raw"] {
+            fs::write(folder.path().join(kind).join(&name), text).unwrap();
+        }
+        let wear = store.wear(&unit()).unwrap_err().to_string();
+        assert!(wear.contains("is damaged") && wear.contains("the next save counts anew"), "{wear}");
+        assert!(store.eeprom(&unit()).unwrap_err().to_string().contains("counts as not known"));
+        assert!(store.raw_writes(&unit()).unwrap_err().to_string().contains("written raw"));
+    }
+    let wear = store.count_saves(&unit(), 1, "2026-01-05").unwrap();
+    assert_eq!((wear.saves, wear.earlier_lost, wear.level()), (1, true, WearLevel::Half));
+    assert_eq!(store.wear(&unit()).unwrap(), wear);
+    assert!(
+        folder.path().join("wear").join(format!("{name}.damaged")).exists(),
+        "it is there to be looked at"
+    );
+}
+
+#[test]
+fn a_damaged_journal_is_told_until_it_is_put_aside() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::at(folder.path());
+    fs::create_dir_all(folder.path().join("journals")).unwrap();
+    fs::write(folder.path().join("journals").join(format!("000007-{}.json", unit().file_name())), "")
+        .unwrap();
+    let (journals, faults) = store.open_journals(&unit());
+    assert_eq!((journals.len(), faults.len()), (0, 1));
+    let told = faults[0].to_string();
+    assert!(told.contains("the journal") && told.contains("may have been cut short"), "{told}");
+    store.put_damaged_journals_aside(&faults).unwrap();
+    assert_eq!(store.open_journals(&unit()).1.len(), 0);
+}
+
+#[test]
+fn a_folder_that_cannot_be_listed_is_told_and_not_taken_for_empty() {
+    let folder = tempfile::tempdir().unwrap();
+    for kind in ["journals", "backups"] {
+        fs::write(folder.path().join(kind), "a file where a folder should be").unwrap();
+    }
+    let store = Store::at(folder.path());
+    assert_eq!(store.open_journals(&unit()).1.len(), 1);
+    assert!(store.listed_backups(None).unwrap_err().to_string().contains("backup"));
+    assert!(store.back_up(&unit(), Act::Write, &numbered_profile(1)).is_err());
 }

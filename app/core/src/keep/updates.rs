@@ -2,12 +2,11 @@
 //! wrong baud rate.
 
 use brushwork_link::Message;
-use std::fs;
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::store::{KeepError, Store};
+use super::store::{KeepError, Record, Store};
 use crate::messages::UpdateMessage;
 
 const FOLDER: &str = "updates";
@@ -51,22 +50,37 @@ impl Store {
     /// It cannot be written.
     pub fn open_update(&self, update: &OpenUpdate) -> Result<(), KeepError> {
         let path = self.update_path(&update.place)?;
-        self.put(&path, &serde_json::to_string_pretty(update).unwrap_or_default())
+        self.put(Record::Update, &path, &serde_json::to_string_pretty(update).unwrap_or_default())
     }
 
     /// The update that was begun at a place and did not end, if there is one.
+    ///
+    /// # Errors
+    /// The note is damaged or cannot be read.
+    pub fn update_at(&self, place: &str) -> Result<Option<OpenUpdate>, KeepError> {
+        // A user without a home has kept nothing.
+        let Ok(path) = self.update_path(place) else { return Ok(None) };
+        let update: Option<OpenUpdate> = self.json(Record::Update, &path)?;
+        Ok(update.filter(|update| update.place == place))
+    }
+
+    /// What is known of a place at which nobody answers, in a sentence: an update that was begun there and did not end.
     #[must_use]
-    pub fn update_at(&self, place: &str) -> Option<OpenUpdate> {
-        let text = fs::read_to_string(self.update_path(place).ok()?).ok()?;
-        let update: OpenUpdate = serde_json::from_str(&text).ok()?;
-        (update.place == place).then_some(update)
+    pub fn waiting_at(&self, place: &str) -> Option<Message> {
+        match self.update_at(place) {
+            Ok(update) => update.map(|update| update.sentence()),
+            Err(fault) => Some(Message::error(fault)),
+        }
     }
 
     /// A controller answers there again.
     pub fn close_update(&self, place: &str) {
-        if let Some(path) = self.update_at(place).and_then(|_| self.update_path(place).ok()) {
+        let is_of_another = matches!(self.update_at(place), Ok(None));
+        if let Ok(path) = self.update_path(place)
+            && !is_of_another
+        {
             // What stays is told once more when nobody answers, which is true then too.
-            let _ = fs::remove_file(path);
+            let _ = self.take_away(Record::Update, &path);
         }
     }
 
@@ -93,13 +107,13 @@ mod tests {
             backup: "000001".to_owned(),
         };
         store.open_update(&update).unwrap();
-        assert_eq!(store.update_at("/dev/ttyACM0"), Some(update.clone()));
-        assert_eq!(store.update_at("/dev-ttyACM0"), None, "the same file, another place");
+        assert_eq!(store.update_at("/dev/ttyACM0").unwrap(), Some(update.clone()));
+        assert_eq!(store.update_at("/dev-ttyACM0").unwrap(), None, "the same file, another place");
         let sentence = update.sentence().to_string();
         assert!(sentence.contains("--connect /dev/ttyACM0 --resume --model mcp266"), "{sentence}");
         store.close_update("/dev-ttyACM0");
-        assert!(store.update_at("/dev/ttyACM0").is_some());
+        assert!(store.update_at("/dev/ttyACM0").unwrap().is_some());
         store.close_update("/dev/ttyACM0");
-        assert_eq!(store.update_at("/dev/ttyACM0"), None);
+        assert_eq!(store.update_at("/dev/ttyACM0").unwrap(), None);
     }
 }

@@ -3,7 +3,7 @@
 use crate::messages::{CoreActMessage, CoreCauseMessage, CoreRemedyMessage};
 use brushwork_link::messages::ActMessage;
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
@@ -31,6 +31,8 @@ pub struct Keeping {
 struct Worker {
     tasks: Option<Sender<Task>>,
     thread: Option<JoinHandle<()>>,
+    /// What could not be kept at the end of acts, and was not told yet.
+    faults: Arc<Mutex<Vec<KeepError>>>,
 }
 
 /// What is known of the unit besides its settings.
@@ -58,15 +60,23 @@ impl Keeping {
     pub fn new(store: Store) -> Self {
         let (sender, tasks) = bounded(QUEUE);
         let own = store.clone();
-        let work = move || tasks.iter().for_each(|task| perform(&own, task));
+        let faults = Arc::new(Mutex::new(Vec::new()));
+        let told = faults.clone();
+        let work = move || tasks.iter().for_each(|task| perform(&own, &told, task));
         // Without a thread the sender's other end is gone: nothing can be kept, so nothing is begun.
         let thread = thread::Builder::new().name("keep".to_owned()).spawn(work).ok();
-        Self { store, worker: Arc::new(Worker { tasks: Some(sender), thread }) }
+        Self { store, worker: Arc::new(Worker { tasks: Some(sender), thread, faults }) }
     }
 
     /// The files.
     pub fn store(&self) -> &Store {
         &self.store
+    }
+
+    /// What could not be kept when acts ended, since the last look. Their journals stay open where that is so.
+    #[must_use]
+    pub fn take_faults(&self) -> Vec<KeepError> {
+        std::mem::take(&mut *self.worker.faults.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
     /// Keeps what is done to one unit.
@@ -144,7 +154,7 @@ impl Keeper for UnitKeeper {
     }
 }
 
-fn perform(store: &Store, task: Task) {
+fn perform(store: &Store, faults: &Mutex<Vec<KeepError>>, task: Task) {
     match task {
         Task::Begin { origin, entry, answer } => {
             let tried = ActMessage::KeepBackup { act: entry.act.label() };
@@ -153,8 +163,9 @@ fn perform(store: &Store, task: Task) {
             let _ = answer.send(begun);
         }
         Task::End { origin, begun, ending, done } => {
-            // What cannot be written now leaves the journal open: it is told at the next connection.
-            let _ = end(store, &origin, &begun, &ending);
+            if let Err(error) = end(store, &origin, &begun, &ending) {
+                faults.lock().unwrap_or_else(PoisonError::into_inner).push(error);
+            }
             // Nobody may wait for it.
             let _ = done.send(());
         }
@@ -166,10 +177,15 @@ fn begin(store: &Store, origin: &Origin, entry: &Entry) -> Result<Begun, KeepErr
     backup.note = format!("before {}", entry.act.label());
     store.back_up(&origin.unit, entry.act, &backup)?;
     let before = match entry.act {
+        // A note that cannot be read is named by whoever shows what EEPROM holds; here it counts as not known.
         // What a cut save leaves is a mix of what EEPROM held and of what was saved.
         Act::Save => Profile {
             date: backup.date.clone(),
-            ..store.eeprom(&origin.unit).unwrap_or_else(|| profile(origin, entry, SettingsImage::default()))
+            ..store
+                .eeprom(&origin.unit)
+                .ok()
+                .flatten()
+                .unwrap_or_else(|| profile(origin, entry, SettingsImage::default()))
         },
         Act::Write | Act::Defaults | Act::Reload | Act::Firmware | Act::Trial => backup,
     };

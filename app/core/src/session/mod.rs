@@ -143,7 +143,8 @@ fn settled(target: &ConnectTarget, chosen: FamilyChoice, ports: &[PortInfo]) -> 
     if chosen != FamilyChoice::AUTO {
         return chosen;
     }
-    let update = Store::of_user().update_at(&target.to_string());
+    // What cannot be read is told when nobody answers.
+    let update = Store::of_user().update_at(&target.to_string()).ok().flatten();
     let begun =
         |family: &&FamilyRef| update.as_ref().is_some_and(|update| family.model(&update.model).is_some());
     let port = match target {
@@ -161,7 +162,7 @@ fn settled(target: &ConnectTarget, chosen: FamilyChoice, ports: &[PortInfo]) -> 
 /// What is known of a target at which nobody answers: an update that was begun there and did not end.
 #[must_use]
 pub fn waiting_at(target: &str) -> Option<Message> {
-    Store::of_user().update_at(target).map(|update| update.sentence())
+    Store::of_user().waiting_at(target)
 }
 
 /// A line, and the simulated machine behind it if it runs in this program.

@@ -88,7 +88,7 @@ impl App {
         let Some(connection) = self.model.connection_mut(id) else { return };
         let target = connection.phase.target().unwrap_or_default().to_owned();
         connection.phase = Phase::Open { target: target.clone() };
-        let waiting = self.parts.keeping.store().update_at(&target).map(|update| update.sentence());
+        let waiting = self.parts.keeping.store().waiting_at(&target);
         connection.link = LinkView::default();
         connection.link.waiting = waiting;
         connection.bus = opened.bus;

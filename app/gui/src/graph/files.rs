@@ -10,7 +10,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, SystemTime};
 
-use brushwork_link::settings::replace_file;
+use brushwork_link::files::replace_file;
 use crossbeam_channel::{Receiver, bounded};
 use egui::vec2;
 

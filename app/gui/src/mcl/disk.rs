@@ -8,7 +8,7 @@ use std::path::Path;
 use std::time::SystemTime;
 
 use brushwork_link::Failure;
-use brushwork_link::settings::replace_file;
+use brushwork_link::files::replace_file;
 
 /// How letters are written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]

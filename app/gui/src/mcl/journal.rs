@@ -5,7 +5,7 @@ use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
-use brushwork_link::settings::replace_file;
+use brushwork_link::files::replace_file;
 use serde::{Deserialize, Serialize};
 
 use super::disk::Format;

@@ -388,7 +388,7 @@ fn saves_are_counted_and_a_worn_eeprom_is_told_before_the_save() {
     bench.press("Save");
     bench.pass_ms(10_000);
     let unit = unit(&mut bench);
-    assert_eq!(bench.store().wear(&unit).saves, 1);
+    assert_eq!(bench.store().wear(&unit).unwrap().saves, 1);
     bench.store().count_saves(&unit, 9_999, "2026-01-05").unwrap();
     bench.press("Save to EEPROM");
     assert!(bench.sees_part("may be worn out"));

@@ -3,7 +3,7 @@
 use crate::support::bench::Bench;
 use brushwork_gui::mcl::Document;
 use brushwork_link::device::ArmScope;
-use brushwork_link::settings::replace_file;
+use brushwork_link::files::replace_file;
 use brushwork_plant::world::ScriptRun;
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers};

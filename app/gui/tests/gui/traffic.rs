@@ -126,12 +126,12 @@ fn a_command_that_changes_settings_is_sent_once_a_backup_of_them_is_kept() {
     let kept = backups[0].open().unwrap().profile.settings;
     assert_eq!(kept.get("motor1.velocity.qpps"), Some(SettingValue::Int(44_000)), "what was there before");
     // A save counts as one.
-    assert_eq!(bench.store().wear(&unit).saves, 0);
+    assert_eq!(bench.store().wear(&unit).unwrap().saves, 0);
     bench.model().front.mcp_mut().composer.choose(number::SAVE_SETTINGS, generation);
     bench.pass_ms(200);
     bench.press("Send these bytes");
     bench.pass_ms(3000);
-    assert_eq!((bench.store().backups(Some(&unit)).len(), bench.store().wear(&unit).saves), (2, 1));
+    assert_eq!((bench.store().backups(Some(&unit)).len(), bench.store().wear(&unit).unwrap().saves), (2, 1));
     assert!(bench.store().open_journals(&unit).0.is_empty());
     // What only reads has none.
     bench.model().front.mcp_mut().composer.choose(number::READ_MAIN_BATTERY, generation);

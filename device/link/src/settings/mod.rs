@@ -41,7 +41,7 @@ pub use memory::{DefaultsReport, answers, await_unit, reload, restore_defaults, 
 pub use plan::{Plan, plan};
 pub use profile::{
     FORMAT, Fitted, OpenedProfile, Problem, Profile, ProfileChanges, ProfileError, ProfileFileError, SCHEMA,
-    Strictness, replace_file,
+    Strictness,
 };
 pub use read::{ReadFailure, ReadReport, is_final, is_there, read_all, read_some, went_out};
 pub use row::{Access, Bits, Bound, Carrier, Group, Instance, Place, Range, Row, Sink, Source};

@@ -39,7 +39,8 @@ pub fn run(args: &UpdateArgs, out: &mut Output, interrupt: &Interrupt) -> Result
     })?;
     if args.resume {
         let image = resumed_image(args, bytes, &target)?;
-        accept(args, is_simulated(args, &target), &|| interrupted(interrupt))?;
+        accept(args, is_simulated(args, &target), &|| interrupt.breathe())?;
+        interrupt.hold_line();
         let announced = image.simulated().map(|simulated| simulated.version);
         let expected = Expected::resumed(&Store::of_user(), args.connect.place(), announced);
         let sent = send(LoaderPlace::of(&target, None), image, interrupt)?;
@@ -130,10 +131,6 @@ fn accept(args: &UpdateArgs, simulated: bool, breathe: &dyn Fn() -> Result<(), E
         return Ok(());
     }
     Err(Exit::Refused.saying(CliFirmwareMessage::NotSent))
-}
-
-fn interrupted(interrupt: &Interrupt) -> Result<(), Exit> {
-    if interrupt.sleep(SLICE) { Err(Exit::Interrupted) } else { Ok(()) }
 }
 
 fn backup_file<'p>(path: &'p Path, args: &UpdateArgs) -> NewFile<'p> {

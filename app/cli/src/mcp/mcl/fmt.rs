@@ -48,7 +48,7 @@ fn one(path: &Path, args: &FmtArgs, out: &mut Output) -> Result<bool, Exit> {
     if is_standard(path) {
         out.bytes(&source.encoded(&formatted))?;
     } else if changes {
-        let write = std::fs::write(path, source.encoded(&formatted));
+        let write = brushwork_link::files::replace_file(path, &source.encoded(&formatted));
         write.map_err(|error| failed(format!("Could not write {}: {error}.", path.display())))?;
     }
     Ok(false)

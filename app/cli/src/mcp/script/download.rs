@@ -18,6 +18,7 @@ use crate::{Exit, Interrupt, Output, say};
 pub fn run(args: &DownloadArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let image = image_of(&args.file)?;
     let controller = Controller::connect(&args.connect, interrupt)?;
+    controller.announce();
     let done = to_controller(&controller, image, args.simulated)?;
     let printed = if args.json { print_json(&done, out) } else { out.line(sentence(&done)) };
     printed?;

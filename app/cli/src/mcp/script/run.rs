@@ -18,6 +18,7 @@ use crate::{Exit, Interrupt, say};
 pub fn start(args: &StartArgs, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let image = args.file.as_deref().map(download::image_of).transpose()?;
     let controller = Controller::connect(&args.connect, interrupt)?;
+    controller.announce();
     if let Some(image) = image {
         download::to_controller(&controller, image, args.simulated)?;
     }
@@ -32,6 +33,7 @@ pub fn start(args: &StartArgs, interrupt: &Interrupt) -> Result<Exit, Exit> {
 /// Stops the script and the motors.
 pub fn stop(args: &StopArgs, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let controller = Controller::connect(&args.connect, interrupt)?;
+    controller.announce();
     stop_driven(controller.device(), controller.identity())?;
     Ok(Exit::Done)
 }

@@ -25,6 +25,7 @@ const UNKNOWN: &str =
 /// Tells or sets autorun.
 pub fn autorun(args: &AutorunArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let controller = Controller::connect(&args.connect, interrupt)?;
+    controller.announce();
     let wanted = args.delay;
     let (subject, mut keeper) = (controller.subject, controller.keeper());
     let finished = controller.run(McpActMessage::SetAutorun, SETTING_LIMIT, move |wire| {
@@ -51,6 +52,7 @@ pub fn autorun(args: &AutorunArgs, out: &mut Output, interrupt: &Interrupt) -> R
 /// Tells what is known of the script.
 pub fn status(args: &StatusArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let controller = Controller::connect(&args.connect, interrupt)?;
+    controller.announce();
     let finished = controller.run(McpActMessage::ReadAutorun, LIMIT, move |wire| {
         read_autorun(wire).map_err(|error| failure(&error, wire))
     })?;

@@ -9,11 +9,12 @@ use crate::model::{Settle, Sheet};
 impl GeneralView<'_> {
     /// Settles what was cut short. The newest alone is finished or undone; those before were overtaken by it.
     pub fn settle(&mut self, how: Settle) {
-        let Some(newest) = self.settings.newest_unfinished() else { return };
         if how == Settle::Leave {
             self.settings.close_unfinished();
+            self.settings.put_damaged_aside();
             return self.close_sheet();
         }
+        let Some(newest) = self.settings.newest_unfinished() else { return };
         let Some(unit) = self.settings.unit_mut() else { return };
         let Some(ram) = unit.ram() else { return };
         let remedy = remedy(&newest, unit.table(), ram, how == Settle::Undo, unit.is_simulated);

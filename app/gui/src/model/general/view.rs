@@ -100,6 +100,13 @@ impl GeneralView<'_> {
 
     /// Takes in what work with the settings came to.
     pub fn take(&mut self, ended: Ended) -> Vec<Effect> {
+        let mut effects = self.take_ended(ended);
+        let faults = self.settings.take_kept_faults();
+        effects.extend(faults.into_iter().map(|fault| Effect::Say(Gravity::Error, fault)));
+        effects
+    }
+
+    fn take_ended(&mut self, ended: Ended) -> Vec<Effect> {
         match ended {
             Ended::Said(said) => said.into_iter().map(|(gravity, text)| Effect::say(gravity, text)).collect(),
             Ended::Calibrated(report) => {

@@ -1,12 +1,14 @@
 //! What is kept on this computer of the unit that is looked at: backups, what was cut short, its EEPROM as last known.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
+use brushwork_link::Message;
 use brushwork_link::settings::{Keeper, Profile, SaveVerdict, SettingsImage};
 use brushwork_link::transport::PortInfo;
 
 use super::unit_key::UnitKey;
-use brushwork_core::keep::{Backup, Keeping, OpenJournal, UnitId, Wear};
+use brushwork_core::keep::{Backup, KeepError, Keeping, OpenJournal, UnitId, Wear};
 use brushwork_core::settings::Done;
 
 mod acts;
@@ -25,6 +27,12 @@ pub(super) struct Kept {
     /// EEPROM as it was proven last, in this session or an earlier one.
     eeprom: Option<Profile>,
     wear: Wear,
+    /// Why it is not known how often the EEPROM was written.
+    wear_fault: Option<Message>,
+    /// Journals that cannot be read.
+    damaged: Vec<Arc<KeepError>>,
+    /// What could not be kept or read, to be said once.
+    untold: Vec<Message>,
 }
 
 /// How something that was cut short is settled.
@@ -64,6 +72,29 @@ impl Kept {
         Some(self.keeping.as_ref()?.keeper(self.units.get(unit)?.clone(), firmware))
     }
 
+    /// What stands on the disk by now of the unit that is looked at.
+    fn look_at_files(&mut self) {
+        let (Some(keeping), Some(unit)) = (self.keeping.clone(), self.unit.clone()) else { return };
+        self.backups = self.told(keeping.store().listed_backups(Some(&unit))).unwrap_or_default();
+        match keeping.store().wear(&unit) {
+            Ok(wear) => (self.wear, self.wear_fault) = (wear, None),
+            Err(fault) => self.wear_fault = Some(Message::error(fault)),
+        }
+    }
+
+    /// What was read, or the sentence why not, to be said.
+    fn told<T>(&mut self, read: Result<T, KeepError>) -> Option<T> {
+        match read {
+            Ok(read) => Some(read),
+            // A user without a home has kept nothing, which the first act that keeps something tells.
+            Err(KeepError::NoFolder) => None,
+            Err(fault) => {
+                self.untold.push(Message::error(fault));
+                None
+            }
+        }
+    }
+
     /// A unit has another address.
     pub(super) fn follow_address(&mut self, old: &UnitKey, new: UnitKey) {
         let Some(unit) = self.units.remove(old) else { return };
@@ -77,6 +108,7 @@ impl Kept {
     pub(super) fn forget_unit(&mut self) {
         self.unit = None;
         self.unfinished.clear();
+        self.damaged.clear();
         self.backups.clear();
         self.eeprom = None;
     }

@@ -1,5 +1,6 @@
 //! The sheets of what is kept on this computer: backups, what was cut short; and the one that copies a motor.
 
+use brushwork_link::Message;
 use brushwork_link::settings::{Aftermath, Difference, Held, Row};
 use egui::{Button, Grid, Role, Ui, WidgetInfo};
 
@@ -83,6 +84,11 @@ pub fn unfinished_ui(ui: &mut Ui, general: &GeneralView<'_>) -> Vec<Offer> {
     title_ui(ui, "Unfinished");
     let aftermaths = general.settings.aftermaths();
     let Some(unit) = general.unit() else { return Vec::new() };
+    let damaged: Vec<Message> = general.settings.damaged_journals().collect();
+    damaged.iter().for_each(|fault| indicator_ui(ui, IndicatorState::Error, fault));
+    if aftermaths.is_empty() && !damaged.is_empty() {
+        return vec![("Leave as it is", Act::Settle(Settle::Leave), true)];
+    }
     if aftermaths.is_empty() {
         let text = if general.settings.has_unfinished() {
             "Something was cut short on this controller. Read the settings to see what became of it."

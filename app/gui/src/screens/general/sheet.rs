@@ -212,13 +212,17 @@ fn save_ui(ui: &mut Ui, general: &GeneralView<'_>, words: &SettingsWords) -> Vec
             "Changes on this screen that are not written are not saved. Write them first to keep them.";
         indicator_ui(ui, IndicatorState::Warning, text);
     }
-    let (wear, limits) = general.settings.wear();
-    let state = match wear.level() {
-        WearLevel::Fine => IndicatorState::Ok,
-        WearLevel::Half => IndicatorState::Warning,
-        WearLevel::Worn => IndicatorState::Error,
-    };
-    indicator_ui(ui, state, &format!("{} {limits}", wear.sentence()));
+    match general.settings.wear() {
+        Ok((wear, limits)) => {
+            let state = match wear.level() {
+                WearLevel::Fine => IndicatorState::Ok,
+                WearLevel::Half => IndicatorState::Warning,
+                WearLevel::Worn => IndicatorState::Error,
+            };
+            indicator_ui(ui, state, &format!("{} {limits}", wear.sentence()));
+        }
+        Err(fault) => indicator_ui(ui, IndicatorState::Warning, fault),
+    }
     vec![(words.save_now, Act::FamilyAction(SettingsAction::Save), true)]
 }
 

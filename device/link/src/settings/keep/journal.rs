@@ -45,19 +45,19 @@ pub struct Journal {
 #[derive(Debug, Error)]
 pub enum JournalError {
     /// It is no JSON.
-    #[error("The journal is damaged: {source}.")]
+    #[error("it is no JSON: {source}")]
     Json {
         /// Where.
         source: serde_json::Error,
     },
     /// A member is missing or of another form.
-    #[error("The journal is damaged: it says no {member}.")]
+    #[error("it says no {member}")]
     Member {
         /// Which.
         member: &'static str,
     },
     /// One of its two profiles is faulty.
-    #[error("The journal is damaged:\n{source}")]
+    #[error("{source}")]
     Profile {
         /// Its faults.
         source: ProfileError,

@@ -18,5 +18,4 @@ mod text;
 pub use changes::ProfileChanges;
 pub use content::{FORMAT, OpenedProfile, Profile, SCHEMA, Strictness};
 pub use error::{Problem, ProfileError, ProfileFileError};
-pub use file::replace_file;
 pub use fit::Fitted;

@@ -1,7 +1,9 @@
 //! What the settings of a unit have to do with what is kept on this computer.
 
+use std::sync::Arc;
+
 use brushwork_link::settings::{Act, Aftermath, Journal};
-use brushwork_link::{Identity, Keeper, PortInfo, Profile};
+use brushwork_link::{Identity, Keeper, Message, PortInfo, Profile};
 
 use super::Came;
 use crate::model::settings::unit_key::UnitKey;
@@ -30,21 +32,32 @@ impl Settings {
         let kept = &mut self.kept;
         let unit = UnitId::new(identity, &kept.ports);
         kept.units.insert(key, unit.clone());
-        kept.unit = Some(unit);
-        if let (Some(keeping), Some(unit)) = (&kept.keeping, &kept.unit) {
-            kept.unfinished = keeping.store().open_journals(unit).0;
-            kept.eeprom = keeping.store().eeprom(unit);
-            kept.wear = keeping.store().wear(unit);
-            kept.backups = keeping.store().backups(Some(unit));
-        }
+        kept.unit = Some(unit.clone());
+        let Some(keeping) = kept.keeping.clone() else { return };
+        let (unfinished, damaged) = keeping.store().open_journals(&unit);
+        kept.unfinished = unfinished;
+        kept.damaged = damaged.into_iter().map(Arc::new).collect();
+        kept.untold.extend(kept.damaged.iter().cloned().map(Message::error));
+        kept.eeprom = kept.told(keeping.store().eeprom(&unit)).flatten();
+        kept.look_at_files();
+        kept.untold.extend(kept.wear_fault.clone());
     }
 
     /// What stands on the disk by now: backups, and how often the EEPROM was written.
     pub fn refresh_kept(&mut self) {
-        let kept = &mut self.kept;
-        let (Some(keeping), Some(unit)) = (&kept.keeping, &kept.unit) else { return };
-        kept.backups = keeping.store().backups(Some(unit));
-        kept.wear = keeping.store().wear(unit);
+        self.kept.look_at_files();
+    }
+
+    /// What could not be kept or read since the last look, in sentences.
+    pub fn take_kept_faults(&mut self) -> Vec<Message> {
+        let ended = self.kept.keeping.as_ref().map(Keeping::take_faults).unwrap_or_default();
+        self.kept.untold.extend(ended.into_iter().map(Message::error));
+        std::mem::take(&mut self.kept.untold)
+    }
+
+    /// Journals of the unit that cannot be read, each in a sentence.
+    pub fn damaged_journals(&self) -> impl Iterator<Item = Message> + '_ {
+        self.kept.damaged.iter().cloned().map(Message::error)
     }
 
     /// The unit's backups, newest first.
@@ -63,13 +76,19 @@ impl Settings {
     }
 
     /// How often the EEPROM was written, and how far that count can be trusted.
-    pub fn wear(&self) -> (&Wear, &'static str) {
-        (&self.kept.wear, self.kept.unit.as_ref().map_or("", UnitId::limits))
+    ///
+    /// # Errors
+    /// A sentence: its file cannot be read.
+    pub fn wear(&self) -> Result<(&Wear, &'static str), &Message> {
+        if let Some(fault) = &self.kept.wear_fault {
+            return Err(fault);
+        }
+        Ok((&self.kept.wear, self.kept.unit.as_ref().map_or("", UnitId::limits)))
     }
 
     /// Whether something that was begun on this unit is not known to have ended.
     pub fn has_unfinished(&self) -> bool {
-        !self.kept.unfinished.is_empty()
+        !self.kept.unfinished.is_empty() || !self.kept.damaged.is_empty()
     }
 
     /// What was cut short, oldest first, as the settings read last tell.
@@ -89,6 +108,14 @@ impl Settings {
         let Some(keeping) = &self.kept.keeping else { return };
         // A journal that cannot be removed is told once more at the next connection.
         let _ = keeping.store().close_journals(&std::mem::take(&mut self.kept.unfinished));
+    }
+
+    /// Puts journals that cannot be read aside: they were told.
+    pub fn put_damaged_aside(&mut self) {
+        let Some(keeping) = &self.kept.keeping else { return };
+        // One that cannot be put aside is told once more at the next connection.
+        let damaged = std::mem::take(&mut self.kept.damaged);
+        let _ = keeping.store().put_damaged_journals_aside(damaged.iter().map(|fault| &**fault));
     }
 
     /// Takes in what work came to: what was cut short may be settled by it, or has to be told now, which is true then.
