@@ -47,6 +47,7 @@ pub struct VirtualLink<M: Machine = Bus> {
     frame_at: Duration,
     written: Written,
     timer: Arc<Mutex<Duration>>,
+    byte_time: Option<Duration>,
 }
 
 /// What the loop has written, each write by itself.
@@ -123,6 +124,23 @@ impl<M: Machine + 'static> VirtualLink<M> {
         let paced = stream != StreamIndex::Usb;
         let byte_time = paced.then(|| byte_time(bus.bits_per_second(stream)));
         let line = VirtualLine::new(Paced::new(Faulty::new(bus, faults, seed), paced), stream);
+        Self::on(line, byte_time, open)
+    }
+
+    /// The program is gone in the midst of whatever it did, and another one opens the same line.
+    #[must_use]
+    pub fn killed_and_opened_again(self, options: DeviceOptions) -> Self {
+        let (line, byte_time) = (self.line.clone(), self.byte_time);
+        drop(self);
+        line.pass(Duration::from_millis(500));
+        Self::on(line, byte_time, |line, clock| DeviceLoop::new(line, clock, options))
+    }
+
+    fn on(
+        line: Line<M>,
+        byte_time: Option<Duration>,
+        open: impl FnOnce(Box<dyn Transport>, Arc<dyn Clock>) -> (DeviceLoop, DeviceHandle),
+    ) -> Self {
         let hooks = Hooks::default();
         let handle_for_hooks = Arc::new(Mutex::new(None));
         let window_alive = Arc::new(AtomicBool::new(true));
@@ -152,6 +170,7 @@ impl<M: Machine + 'static> VirtualLink<M> {
             frame_at,
             written,
             timer,
+            byte_time,
         }
     }
 

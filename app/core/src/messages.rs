@@ -14,6 +14,7 @@ messages! {
         SaveToEeprom "save the settings to EEPROM",
         RestoreDefaults "restore the default settings",
         KeepBackup "keep a backup",
+        NoteLoan "note what a stop may change for a while",
         MeasureQpps "measure QPPS",
         PlayProfile "play the profile",
         TestClamp "test the voltage clamp",

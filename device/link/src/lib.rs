@@ -15,6 +15,7 @@ pub mod failure;
 pub mod family;
 pub mod files;
 pub mod guardian;
+pub mod loan;
 pub mod messages;
 pub mod settings;
 pub mod transport;

@@ -1,6 +1,8 @@
 //! The device thread on simulated Motion Minds in virtual time: found, read, driven by mode, stopped, set and saved, in both
 //! protocols, on clean and on bad lines.
 
+use brushwork_core::keep::{Store, UnitId};
+use brushwork_link::files::{DiskFault, SimulatedDisk};
 use brushwork_tests::said::Said;
 use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex};
@@ -1016,4 +1018,129 @@ fn a_loop_that_is_switched_off_is_told_when_its_unit_is_found() {
 
 fn text_of(messages: &[Message]) -> String {
     messages.iter().map(ToString::to_string).collect()
+}
+
+/// A unit that a program has armed, and to which it is about to send a Stop that changes a register for a while; the number of that register.
+fn about_to_stop(mode: Mode, protocol: Protocol, disk: &SimulatedDisk) -> (Link, u8) {
+    let (mut link, _) = over(vec![unit(mode, protocol, 1)], noting(disk), Vec::new());
+    link.run_for(ms(1_500));
+    let set = |link: &Link, register: u8, value: i64| {
+        inject(link, Address::FACTORY, &Command::Write { register, value });
+        link.line.pass(ms(30));
+    };
+    if mode == Mode::Serial {
+        set(&link, VELOCITYLIMIT, 10);
+        assert!(link.arm(ArmScope::Pwm), "{protocol}: {:?}", failures(&link));
+        drive(&link, DriveCommand::duty(0.5));
+        link.run_for(ms(500));
+        return (link, VELOCITYLIMIT);
+    }
+    tame(&link);
+    assert!(link.arm(ArmScope::Velocity), "{protocol}: {:?}", failures(&link));
+    // So much gain that the loop oscillates for ever.
+    for (register, value) in [(PTERM, 60_000), (DTERM, 0), (PIDSCALAR, 4)] {
+        set(&link, register, value);
+    }
+    drive(&link, speed(4_000));
+    link.run_for(ms(500));
+    (link, FUNCTION)
+}
+
+fn noting(disk: &SimulatedDisk) -> DeviceOptions {
+    let loans = Store::on(Arc::new(disk.clone()), "/keep");
+    DeviceOptions { loans: Some(Arc::new(loans)), ..options(Addresses::Only(1)) }
+}
+
+/// What the store offers of the unit, as the settings that its journals would have written back.
+fn offered(link: &mut Link, disk: &SimulatedDisk) -> (SettingsTable, SettingsImage) {
+    let identity = identities(link).pop().expect("it was found");
+    let table = table(link);
+    let subject = *table.subject();
+    let ram = job(link, move |wire| read_all(wire, subject)).expect("the line is clean").image;
+    let store = Store::on(Arc::new(disk.clone()), "/keep");
+    let (journals, faults) = store.open_journals(&UnitId::new(&identity, &[]));
+    assert!(faults.is_empty(), "{faults:?}");
+    let undone = journals.iter().flat_map(|open| {
+        let back = open.journal.remedy(&ram, true);
+        back.iter().map(|(key, value)| (key.to_owned(), value)).collect::<Vec<_>>()
+    });
+    let undone = undone.collect();
+    (table, undone)
+}
+
+#[test]
+fn a_program_killed_at_any_moment_of_a_stop_leaves_a_note_by_which_all_is_given_back_bit_for_bit() {
+    for (mode, step, moments) in [(Mode::Serial, 15, 40), (Mode::SerialPid, 60, 45)] {
+        for protocol in Protocol::ALL {
+            let mut left_changed = 0;
+            for moment in 0..moments {
+                let disk = SimulatedDisk::default();
+                let (mut link, borrowed) = about_to_stop(mode, protocol, &disk);
+                let before = register(&link, borrowed);
+                // The cable goes in the midst of the stop, and the program is killed then.
+                let line = link.line.clone();
+                link.at(link.now() + ms(moment * step), move |_| {
+                    let unplug = WorldAction::Unplug { unplugged: true };
+                    line.with(|machine| machine.inner_mut().inner_mut().apply(0, &unplug));
+                });
+                link.handle.stop_all();
+                link.run_for(ms(4_000));
+                assert!(link.ended, "{mode:?} {protocol} at {moment}");
+                link.apply(0, &WorldAction::Unplug { unplugged: false });
+                let mut link = link.killed_and_opened_again(noting(&disk));
+                tame(&link);
+                link.run_for(ms(1_500));
+                let is_changed = register(&link, borrowed) != before;
+                left_changed += usize::from(is_changed);
+                let (table, back) = offered(&mut link, &disk);
+                assert_eq!(!back.is_empty(), is_changed, "{mode:?} {protocol} at {moment}: {back:?}");
+                if is_changed {
+                    job(&mut link, move |wire| {
+                        let options = WriteOptions { own_stream: None, simulated: false, as_read: true };
+                        write(wire, &table, &back, options).map_err(|error| panic!("{error}"))
+                    })
+                    .expect("the line is clean");
+                }
+                assert_eq!(register(&link, borrowed), before, "{mode:?} {protocol} at {moment}");
+            }
+            assert!(left_changed > 3, "{mode:?} {protocol}: {left_changed}, so the test tests little");
+        }
+    }
+}
+
+#[test]
+fn a_stop_that_gives_all_back_leaves_no_note() {
+    for protocol in Protocol::ALL {
+        let disk = SimulatedDisk::default();
+        let (mut link, borrowed) = about_to_stop(Mode::Serial, protocol, &disk);
+        let before = register(&link, borrowed);
+        link.handle.stop_all();
+        link.run_for(ms(3_000));
+        assert!(link.stops().last().unwrap().confirmed());
+        assert_eq!(register(&link, borrowed), before);
+        let identity = identities_of(&noting(&disk), link);
+        let store = Store::on(Arc::new(disk.clone()), "/keep");
+        assert_eq!(store.open_journals(&UnitId::new(&identity, &[])).0, []);
+    }
+}
+
+/// Who answers a program that opens the line anew.
+fn identities_of(options: &DeviceOptions, link: Link) -> Identity {
+    let mut link = link.killed_and_opened_again(options.clone());
+    link.run_for(ms(1_500));
+    identities(&link).pop().expect("it was found")
+}
+
+#[test]
+fn where_the_note_cannot_be_kept_arming_says_so() {
+    let disk = SimulatedDisk::default();
+    disk.fail_at(1, DiskFault::Full);
+    let (mut link, _) = over(vec![unit(Mode::SerialPid, Protocol::Binary, 1)], noting(&disk), Vec::new());
+    link.run_for(ms(1_500));
+    assert!(link.arm(ArmScope::Velocity), "{:?}", failures(&link));
+    let said = warnings(&link).concat();
+    assert!(
+        said.contains("note what a stop may change for a while") && said.contains("BRUSHWORK_DATA_DIR"),
+        "{said}"
+    );
 }

@@ -4,12 +4,17 @@ use brushwork_tests::said::Said;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use brushwork_core::keep::TrialKeeper;
+use brushwork_core::keep::{Keeping, Store, TrialKeeper, UnitId};
 use brushwork_core::tune::law::{Report, Request as Tuning, Setup};
 use brushwork_core::tune::live::Live;
 use brushwork_core::tune::{Slot, Target, leaves_off, prepare, restore, run, take};
-use brushwork_link::device::{ArmScope, DeviceOptions, Event, Job, JobEnding, JobTicket, Request};
-use brushwork_link::settings::{Act, Ending, Entry, Keeper, SettingsTable, Subject, WriteOptions, save_kept};
+use brushwork_link::device::{
+    ArmScope, DeviceOptions, Event, Job, JobContext, JobEnding, JobTicket, Request,
+};
+use brushwork_link::files::SimulatedDisk;
+use brushwork_link::settings::{
+    Act, Ending, Entry, Keeper, SettingsTable, Subject, WriteOptions, read_all, save_kept, write,
+};
 use brushwork_link::{Failure, Stream};
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_mcp_sim::motion::MotionSettings;
@@ -41,11 +46,14 @@ fn connected() -> VirtualLink {
 
 fn connected_to(config: ControllerConfig) -> VirtualLink {
     let unit = Controller::new(config).expect("the world is sound");
-    let options = DeviceOptions { stream: Some(Stream::Usb), simulated: true, ..DeviceOptions::default() };
     let bus = Bus::single(unit, StreamIndex::Usb);
-    let mut link = VirtualLink::new(bus, StreamIndex::Usb, options, Vec::new(), 1);
+    let mut link = VirtualLink::new(bus, StreamIndex::Usb, options(), Vec::new(), 1);
     link.run_for(ms(2_000));
     link
+}
+
+fn options() -> DeviceOptions {
+    DeviceOptions { stream: Some(Stream::Usb), simulated: true, ..DeviceOptions::default() }
 }
 
 /// What the controller's loop, time-out and limits are set to.
@@ -357,6 +365,54 @@ fn a_cable_pulled_at_every_stage_leaves_the_motor_to_the_controllers_time_out() 
             );
         }
     }
+}
+
+/// A program dies in the midst of a run, and another one connects.
+#[test]
+fn a_program_killed_at_any_moment_of_a_run_leaves_a_journal_by_which_all_is_given_back_bit_for_bit() {
+    let mut left_changed = 0;
+    for killed_after in (0..900).step_by(30).chain((1_900..9_000).step_by(700)).map(ms) {
+        let store = Store::on(Arc::new(SimulatedDisk::default()), "/keep");
+        let mut link = connected();
+        let before = settings(&link);
+        let identity = link.events.iter().find_map(|(_, event)| match event {
+            Event::Connected(identity) => Some(identity.clone()),
+            _ => None,
+        });
+        let unit = UnitId::new(&identity.expect("it was found"), &[]);
+        let keeping = Keeping::new(store.clone());
+        let keeper = TrialKeeper::new(keeping.keeper(unit.clone(), ""));
+        let setup: Slot<Setup> = Slot::default();
+        let found: Slot<Report> = Slot::default();
+        // The cable goes in the midst of it, and the program is killed then.
+        strike(&link, killed_after, WorldAction::Unplug { unplugged: true });
+        link.finish(prepare(TARGET, subject(), &setup, &keeper), ms(5_000));
+        if !link.ended && link.arm(ArmScope::CommandLine) {
+            link.finish(run(TARGET, velocity(), &found, &Live::default()), ms(20_000));
+        }
+        link.run_for(ms(10_000));
+        assert!(link.ended, "{killed_after:?}");
+        link.apply(0, &WorldAction::Unplug { unplugged: false });
+        let mut link = link.killed_and_opened_again(options());
+        link.run_for(ms(2_000));
+        let is_changed = settings(&link) != before;
+        left_changed += usize::from(is_changed);
+        let (journals, faults) = store.open_journals(&unit);
+        assert!(faults.is_empty(), "{faults:?}");
+        assert!(journals.len() == 1 || !is_changed, "killed after {killed_after:?}: nothing is offered");
+        for open in journals {
+            let work = move |wire: &mut JobContext<'_>| {
+                let ram = read_all(wire, subject())?;
+                let back = open.journal.remedy(&ram.image, true);
+                let options = WriteOptions { own_stream: Some(Stream::Usb), simulated: true, as_read: true };
+                write(wire, &ram.table, &back, options).map_err(|error| panic!("{error}"))
+            };
+            let ended = link.finish(Job::new(Said::Work, ms(30_000), work), ms(30_000));
+            assert!(matches!(ended, Some(JobEnding::Done(_))), "{ended:?}");
+        }
+        assert_eq!(settings(&link), before, "killed after {killed_after:?}");
+    }
+    assert!(left_changed > 10, "{left_changed}, so the test tests little");
 }
 
 #[test]

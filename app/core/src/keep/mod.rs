@@ -9,6 +9,7 @@ mod backups;
 mod firmware;
 pub mod folder;
 mod journals;
+mod loans;
 mod memory;
 mod sequence;
 mod store;

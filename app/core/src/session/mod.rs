@@ -12,6 +12,7 @@ use brushwork_link::capability::KeepsCapabilities;
 use brushwork_link::device::{Addresses, DeviceHandle, DeviceOptions, DeviceThread, PollRate};
 use brushwork_link::driver::{CanLine, can_line};
 use brushwork_link::family::{FamilyRef, families};
+use brushwork_link::loan::KeepsLoans;
 use brushwork_link::transport::{ConnectTarget, OpenError, PortInfo, Stream, Transport, list_ports, ports};
 use brushwork_link::{Clock, FamilyChoice, HiddenSettings, Message};
 
@@ -215,6 +216,7 @@ fn spawn_on_can(
         // Hidden settings are found by address, which nodes share.
         hidden: alone.map(|simulation| simulation as Arc<dyn HiddenSettings>),
         capabilities: keeper(simulation.as_deref()),
+        loans: simulation.is_none().then(|| Arc::new(Store::of_user()) as Arc<dyn KeepsLoans>),
         guardian: if simulation.is_none() { guardian::of_program() } else { None },
         ..DeviceOptions::default()
     };
@@ -253,6 +255,7 @@ fn spawn(
         simulated: simulation.is_some(),
         hidden,
         capabilities: keeper(simulation.as_deref()),
+        loans: simulation.is_none().then(|| Arc::new(Store::of_user()) as Arc<dyn KeepsLoans>),
         guardian: if simulation.is_none() { guardian::of_program() } else { None },
         ..DeviceOptions::default()
     };

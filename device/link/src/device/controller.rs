@@ -15,6 +15,7 @@ use super::stop::{StopBytes, UnitStop};
 use crate::exchange::{Exchange, ExchangeError, Permit, RETRIES, Reply, Watch};
 use crate::failure::Failure;
 use crate::messages::CauseMessage;
+use crate::settings::SettingsImage;
 use crate::transport::Stream;
 use brushwork_values::{Message, Motor, Value};
 use std::cell::Cell;
@@ -87,6 +88,17 @@ pub trait Controller: Send {
         line: &mut Line<'_>,
         stream: Option<Stream>,
     ) -> Result<ArmCheck, ExchangeError>;
+
+    /// The settings that a stop may change for a while, as the unit holds them when nothing of that is under way; known after
+    /// [`Controller::check_arming`].
+    fn lends(&self) -> SettingsImage {
+        SettingsImage::default()
+    }
+
+    /// Those that a stop has changed and not given back yet, as they were before.
+    fn lent(&self) -> SettingsImage {
+        SettingsImage::default()
+    }
 
     /// Sets an encoder's count.
     fn set_encoder(&mut self, line: &mut Line<'_>, motor: Motor, counts: i32) -> Result<(), ExchangeError>;

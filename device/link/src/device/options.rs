@@ -4,6 +4,7 @@ use super::poll_rate::PollRate;
 use crate::capability::KeepsCapabilities;
 use crate::family::FamilyChoice;
 use crate::guardian::Guardian;
+use crate::loan::KeepsLoans;
 use crate::transport::Stream;
 use crate::wire::HiddenSettings;
 use std::sync::Arc;
@@ -62,6 +63,8 @@ pub struct DeviceOptions {
     pub hidden: Option<Arc<dyn HiddenSettings>>,
     /// Where what firmware answers is kept from one session to the next; `None` keeps it for this one.
     pub capabilities: Option<Arc<dyn KeepsCapabilities>>,
+    /// Where it is noted what a stop may change for a while; `None` where the units are simulated in this program and gone with it.
+    pub loans: Option<Arc<dyn KeepsLoans>>,
     /// What stops the motors when this program dies; none where the controllers are simulated inside of it, and die with it.
     pub guardian: Option<Arc<dyn Guardian>>,
     /// How often the signals are read at first.
@@ -81,6 +84,7 @@ impl Default for DeviceOptions {
             simulated: false,
             hidden: None,
             capabilities: None,
+            loans: None,
             guardian: None,
             poll: PollRate::DEFAULT,
             event_capacity: 1024,

@@ -9,6 +9,8 @@ use crate::device::stop::{StopBytes, StopReport, UnitStop};
 use crate::exchange::{ExchangeError, Interruption};
 use crate::failure::Failure;
 use crate::messages::{ActMessage, CauseMessage, RemedyMessage};
+use crate::settings::SettingsImage;
+use brushwork_values::Message;
 use std::time::Duration;
 
 /// A stop that was not confirmed is repeated this often.
@@ -153,6 +155,7 @@ impl DeviceLoop {
     /// A script that this program has started has to confirm its end too, or it may drive the motors again.
     fn note_confirmation(&mut self, index: usize, stop: &UnitStop, begun_at: Duration) {
         let now = self.clock.now();
+        self.note_loan(index, stop);
         let unit = &mut self.units[index];
         let script_may_run = unit.script_started && stop.script_ended != Some(true);
         if stop.confirmed && !script_may_run {
@@ -162,6 +165,27 @@ impl DeviceLoop {
             let since = unit.stop_again.map_or(begun_at, |again| again.since);
             unit.stop_again = Some(StopAgain { at: now + STOP_AGAIN_INTERVAL, since });
         }
+    }
+
+    /// What a stop has changed and not given back is noted, and what it has given back is done with. Nothing waits for the disk but what comes
+    /// after the stop.
+    fn note_loan(&mut self, index: usize, stop: &UnitStop) {
+        let controller = &self.units[index].controller;
+        let (lent, lends) = (controller.lent(), controller.lends());
+        if !lent.is_empty() {
+            // That it cannot be kept was said when it was armed.
+            drop(self.lend(index, &lent));
+        } else if stop.confirmed
+            && let Some(loans) = &self.options.loans
+        {
+            loans.given_back(controller.identity(), &lends);
+        }
+    }
+
+    /// Notes what settings of a unit hold. Gives the sentence on why that cannot be kept.
+    pub(super) fn lend(&self, index: usize, held: &SettingsImage) -> Option<Message> {
+        let loans = self.options.loans.as_ref().filter(|_| !held.is_empty())?;
+        loans.lend(self.units[index].controller.identity(), held).err().map(Message::error)
     }
 
     /// The unit whose motors may still run although they were told to stop.

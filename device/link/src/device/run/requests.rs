@@ -150,6 +150,8 @@ impl DeviceLoop {
         let ArmCheck { controller_timeout, mut warnings, .. } = check;
         let armed = Armed { scope, controller_timeout };
         warnings.extend(self.have_guard());
+        let lends = self.units[self.selected].controller.lends();
+        warnings.extend(self.lend(self.selected, &lends));
         self.armed = Some(armed);
         self.tend_guard();
         self.guard.set_armed(true, disarms);

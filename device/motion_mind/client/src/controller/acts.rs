@@ -1,6 +1,7 @@
 //! What the device thread asks of a Motion Mind, each act in its file.
 
 use crate::controller::MotionMindFacts;
+use crate::controller::borrowed::Borrowed;
 use crate::controller::traffic::{describe_received, describe_sent};
 use crate::controller::unit::MotionMind;
 use crate::controller::{arming, driving, polling, raw, stopping};
@@ -13,6 +14,7 @@ use brushwork_link::device::StatusReport;
 use brushwork_link::device::controller::{ArmCheck, Controller, Line, PollItem, PollList};
 use brushwork_link::device::{StopBytes, UnitStop};
 use brushwork_link::exchange::{ExchangeError, Reply as Answer};
+use brushwork_link::settings::SettingsImage;
 use brushwork_link::transport::Stream;
 use brushwork_motion_mind_wire::{
     Address, Command, Effect, Reply, fields, numbers, register_number as number,
@@ -60,6 +62,14 @@ impl Controller for MotionMind {
         _stream: Option<Stream>,
     ) -> Result<ArmCheck, ExchangeError> {
         arming::check(self, line)
+    }
+
+    fn lends(&self) -> SettingsImage {
+        self.lends.into_iter().map(Borrowed::setting).collect()
+    }
+
+    fn lent(&self) -> SettingsImage {
+        self.borrowed.iter().copied().map(Borrowed::setting).collect()
     }
 
     fn set_encoder(&mut self, line: &mut Line<'_>, motor: Motor, counts: i32) -> Result<(), ExchangeError> {

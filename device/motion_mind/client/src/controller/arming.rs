@@ -1,5 +1,6 @@
 //! Whether motion may be allowed: the mode must take serial commands, and nothing may hold the drive back.
 
+use crate::controller::borrowed::Borrowed;
 use crate::controller::driving;
 use crate::controller::registers::{mask, value_in};
 use crate::controller::stopping::{give_back, read_ramp, switch_on};
@@ -48,6 +49,7 @@ pub fn check(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<ArmCheck, Exc
         give_back(unit, line, number::VELOCITYLIMIT)?;
         warnings.push(MotionMindDriverMessage::NoTimeout.into());
         warnings.extend(ramp_warning(unit, line)?);
+        unit.lends = lends(unit);
     }
     let reasons = objections
         .into_iter()
@@ -104,6 +106,18 @@ fn hold(unit: &mut MotionMind, line: &mut Line<'_>, function: i64) -> Result<Hol
         return Ok(Hold::AsItWas);
     }
     Ok(if switch_on(unit, line, function & !off)? { Hold::SwitchedOn } else { Hold::Moves })
+}
+
+/// What a stop of the unit may change for a while: a slow ramp in mode 3; else the output of the loop, which is on now.
+fn lends(unit: &MotionMind) -> Option<Borrowed> {
+    match unit.mode() {
+        Mode::Serial => {
+            let value = unit.ramp.step.filter(|_| unit.ramp.is_slow())?;
+            Some(Borrowed { register: number::VELOCITYLIMIT, value })
+        }
+        Mode::SerialPid | Mode::AnalogPid => Some(Borrowed { register: number::FUNCTION, value: 0 }),
+        Mode::RadioControl | Mode::Analog | Mode::Buttons | Mode::FactoryRestore | Mode::FactoryTest => None,
+    }
 }
 
 fn ramp_warning(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<Option<Message>, ExchangeError> {

@@ -1,6 +1,7 @@
 //! What a stop has changed of a unit and gives back, and how steep its ramp is.
 
-use brushwork_motion_mind_wire::register_number as number;
+use brushwork_link::settings::SettingValue;
+use brushwork_motion_mind_wire::{function, register_number as number};
 use std::time::Duration;
 
 /// A ramp that lets full drive come down within this is quick enough as it is.
@@ -15,6 +16,21 @@ pub struct Borrowed {
     /// What it held before.
     pub value: i64,
 }
+
+impl Borrowed {
+    /// As a setting: its key and what it is to hold again. Of FUNCTION a stop changes one bit.
+    pub fn setting(self) -> (String, SettingValue) {
+        if self.register == number::FUNCTION {
+            let is_off = self.value & i64::from(function::DISABLEPID) != 0;
+            return (DISABLEPID.to_owned(), SettingValue::Bool(is_off));
+        }
+        (VELOCITYLIMIT.to_owned(), SettingValue::Int(self.value))
+    }
+}
+
+/// Keys of the two settings that a stop changes.
+pub const DISABLEPID: &str = "function.disablepid";
+pub const VELOCITYLIMIT: &str = "register.velocitylimit";
 
 /// How the drive of mode 3 changes, as last read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -13,13 +13,15 @@ pub struct MotionMind {
     pub(super) identity: Identity,
     /// Registers in RAM that a stop has changed, with the values to put back.
     pub(super) borrowed: Vec<Borrowed>,
+    /// What a stop may change for a while, with the value that is to be there again; known once the unit was found fit to be armed.
+    pub(super) lends: Option<Borrowed>,
     /// VELOCITYLIMIT and TIMER as last read: how steep a ramp is.
     pub(super) ramp: Ramp,
 }
 
 impl MotionMind {
     pub(super) fn new(speaker: Speaker, identity: Identity) -> Self {
-        Self { speaker, identity, borrowed: Vec::new(), ramp: Ramp::default() }
+        Self { speaker, identity, borrowed: Vec::new(), lends: None, ramp: Ramp::default() }
     }
 
     pub(super) fn facts(&self) -> MotionMindFacts {
@@ -42,11 +44,13 @@ impl MotionMind {
         match *command {
             Command::Write { register, value } | Command::WriteStore { register, value } => {
                 self.borrowed.retain(|borrowed| borrowed.register != register);
+                self.lends = self.lends.filter(|lends| lends.register != register);
                 self.speaker.note_write(register, value);
                 self.ramp.note_write(register, value);
             }
             Command::Restore | Command::Reset => {
                 self.borrowed.clear();
+                self.lends = None;
                 self.speaker.returns = None;
                 self.ramp = Ramp::default();
             }
