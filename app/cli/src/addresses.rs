@@ -12,7 +12,7 @@ use brushwork_values::parse_byte;
 pub enum AddressList {
     /// One, named alone.
     One(u8),
-    /// Several, in the order in which they were named, each once. A list of one is one too.
+    /// Several, in the order in which they were named, each once unless they are to be made. A list of one is one too.
     These(Vec<u8>),
     /// All that are found.
     All,
@@ -68,16 +68,28 @@ impl Line<'_> {
 
 /// What `--address` of controllers takes.
 pub fn parse(text: &str) -> Result<AddressList, String> {
-    read(text, parse_number, &addresses_text())
+    read(text, parse_number, &addresses_text()).map(each_once)
 }
 
 /// What `--address` of a line takes, which may be a CAN bus.
 pub fn parse_on_line(text: &str) -> Result<AddressList, String> {
     let number = |text: &str| parse_byte(text).filter(|number| (1..=0x87).contains(number));
-    read(text, number, &format!("{}, CANopen node at 1 to 127", addresses_text()))
+    read(text, number, &format!("{}, CANopen node at 1 to 127", addresses_text())).map(each_once)
 }
 
-/// What `--address` of units that are made takes.
+/// Who is named twice is meant once.
+fn each_once(list: AddressList) -> AddressList {
+    let AddressList::These(numbers) = list else { return list };
+    let mut once: Vec<u8> = Vec::new();
+    for number in numbers {
+        if !once.contains(&number) {
+            once.push(number);
+        }
+    }
+    AddressList::These(once)
+}
+
+/// What `--address` of units that are made takes. One that is named twice stays so, which their family refuses.
 pub fn parse_made(text: &str) -> Result<AddressList, String> {
     let list = read(text, parse_byte, &addresses_text())?;
     if list == AddressList::All {
@@ -108,9 +120,7 @@ fn read(text: &str, number: fn(&str) -> Option<u8>, names: &impl Display) -> Res
         }
         for number in first..=last {
             one(&number.to_string())?;
-            if !numbers.contains(&number) {
-                numbers.push(number);
-            }
+            numbers.push(number);
         }
     }
     Ok(AddressList::These(numbers))

@@ -5,7 +5,6 @@
 //! has changed, on every way out on which there is still a link. Nothing is asked here: whoever uses this asks the owner before each step that
 //! does more than read.
 
-use std::fs;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -25,6 +24,7 @@ use crate::keep::TrialKeeper;
 use crate::messages::ExamineMessage;
 use crate::tune::law::{Families, Setup};
 use crate::tune::{self, Slot, Target};
+use brushwork_link::bounded;
 
 /// How long a step may take: on a line of 2400 bit/s each of a hundred reads takes half a second, and silence longer.
 const ASKING_LIMIT: Duration = Duration::from_secs(600);
@@ -232,7 +232,7 @@ fn not_back(on: String, came_back: ExamineCauseMessage) -> Failure {
 /// A clause: the file cannot be read or is no examination, or no family has a simulator for it.
 pub fn like(path: &Path) -> Result<(&'static dyn Simulator, Started, Vec<String>), String> {
     let text =
-        fs::read_to_string(path).map_err(|error| format!("{} cannot be read ({error})", path.display()))?;
+        bounded::read_text(path).map_err(|error| format!("{} cannot be read ({error})", path.display()))?;
     let examination = Examination::parse(&text).map_err(|error| format!("{}: {error}", path.display()))?;
     let family = families().iter().find(|family| family.key() == examination.family);
     let simulator = family.and_then(|family| simulator::of(*family));

@@ -32,7 +32,6 @@ messages! {
 messages! {
     /// What came back of what was tried, as a clause.
     pub enum WindowCauseMessage {
-        TooLong "it is longer than 16 MB and can be no MCL program",
         NoFile "it is no file, but a folder, a device or a pipe",
         DiskIsBusy "the disk is busy",
         NoThread "the system gave no thread for it",
@@ -279,7 +278,6 @@ messages! {
         HoldsWindow "The window stays open: a firmware update runs, and ending it now would leave the controller without firmware.",
         LinkLost "the link was lost.",
         Busy "the controller is busy.",
-        TooLarge { bytes: u64 } "The file is not sent: it has {bytes} bytes, and no image is that large.",
         NotBegun { why: Message } "The update did not begin: {why} Nothing was erased.",
         CannotSend { why: Message } "{why}: switch the controller off and on.",
         NotFound { path: String, error: String } "Could not read {path}: {error}.",

@@ -193,7 +193,11 @@ fn placed(viewport: &ViewportInfo, zoom: f32, before: Option<Placed>) -> Option<
     Some(if now.maximized { Placed { maximized: true, ..before.unwrap_or(now) } } else { now })
 }
 
-fn read(files: &dyn Files, path: &Path) -> Result<Remembered, Failure> {
+/// What is remembered in a file; one that cannot be read is put aside.
+///
+/// # Errors
+/// What is wrong with it and where it is now.
+pub fn read(files: &dyn Files, path: &Path) -> Result<Remembered, Failure> {
     let text = match files.read(path) {
         Ok(text) => text,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Remembered::default()),

@@ -6,6 +6,7 @@
 
 #![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
 
+pub mod bounded;
 pub mod capability;
 pub mod clock;
 pub mod device;

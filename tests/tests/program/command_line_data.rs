@@ -295,7 +295,7 @@ fn bad_arguments_of_sim_are_told_in_a_sentence_that_says_what_may_stand_there() 
         (&["--address", "0x90"], USAGE, &["0x80 to 0x87"]),
         (&["--address", "0x80,0x80", "--port", "ttl1"], USAGE, &["0x80", "different"]),
         (&["--model", "mcp266,mcp233"], USAGE, &["2 models"]),
-        (&["--address", "0x80,0x81"], USAGE, &["usb", "ttl1"]),
+        (&["--address", "0x80,0x81", "--port", "usb"], USAGE, &["usb", "ttl1"]),
         (&["--tcp", "here"], USAGE, &["--tcp 127.0.0.1:7000"]),
         (&["--tcp", "192.0.2.1:7000"], FAILED, &["192.0.2.1", "127.0.0.1"]),
         (&["--pty", &taken], FAILED, &[&taken, "already there"]),

@@ -153,10 +153,14 @@ fn fmt_rewrites_files_once_and_check_names_those_that_would_change() {
     assert_eq!(shown(&mcl(&["fmt", "-"], "a  =  1\n").stdout), "a = 1\n");
 }
 
-/// Runs `brushwork mcl` with a file as its input and at most 1 GiB of addresses, beyond which it is ended by a signal.
 fn mcl_in_a_gigabyte(arguments: &[&str], input: &str) -> Output {
+    in_a_gigabyte(&[&["mcl"], arguments].concat(), input)
+}
+
+/// Runs the program with a file as its input and at most 1 GiB of addresses, beyond which it is ended by a signal.
+fn in_a_gigabyte(arguments: &[&str], input: &str) -> Output {
     let mut command = Command::new("sh");
-    command.args(["-c", "ulimit -v 1048576 && exec \"$0\" mcl \"$@\" <\"$INPUT\"", BRUSHWORK]);
+    command.args(["-c", "ulimit -v 1048576 && exec \"$0\" \"$@\" <\"$INPUT\"", BRUSHWORK]);
     command.args(arguments).env("INPUT", input);
     Child::output(&command, b"", LIMIT)
 }
@@ -169,10 +173,31 @@ fn input_without_end_is_refused_with_a_sentence() {
         let by_name = mcl_in_a_gigabyte(&[command, "/dev/zero"], "/dev/null");
         for (output, name) in [(by_input, "-"), (by_name, "/dev/zero")] {
             assert_eq!(output.status.code(), Some(1), "{command} {name}: {}", shown(&output.stderr));
-            let expected =
-                format!("Could not read {name}: it goes on after 16 MiB, and no script or image is as long.");
+            let expected = format!(
+                "Could not read {name}: it goes on after 16 MiB, and nothing that belongs here is as long"
+            );
             assert!(shown(&output.stderr).starts_with(&expected), "{command}: {}", shown(&output.stderr));
         }
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn every_command_that_reads_a_file_refuses_one_without_end() {
+    let bound = "it goes on after 16 MiB, and nothing that belongs here is as long";
+    for (arguments, code) in [
+        (&["monitor", "--decode", "/dev/zero"][..], 1),
+        (&["monitor", "--decode", "-"], 1),
+        (&["settings", "diff", "/dev/zero", "/dev/zero"], 5),
+        (&["settings", "import", "/dev/zero", "--connect", "sim:mcp266"], 5),
+        (&["tune", "replay", "/dev/zero"], 1),
+        (&["firmware", "update", "/dev/zero", "--connect", "sim:mcp266"], 1),
+        (&["sim", "--like", "/dev/zero", "--pty", "unused"], 2),
+    ] {
+        let output = in_a_gigabyte(arguments, "/dev/zero");
+        let said = shown(&output.stderr);
+        assert!(said.contains(bound), "{arguments:?}: {:?}: {said}", output.status);
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {said}");
     }
 }
 

@@ -4,7 +4,6 @@
 //! both one packet a line and the lines of a hex dump are understood.
 
 use crate::messages::CliMonitorMessage;
-use std::io::Read;
 use std::path::Path;
 use std::time::Duration;
 
@@ -13,6 +12,7 @@ use super::chosen::follower;
 use super::follower::Follower;
 use super::record::{Direction, Record, print};
 use crate::{Exit, Output};
+use brushwork_link::bounded;
 
 /// Prints what the requests in the file mean.
 pub fn run(args: &MonitorArgs, path: &Path, out: &mut Output) -> Result<(), Exit> {
@@ -35,11 +35,9 @@ fn is_standard_input(path: &Path) -> bool {
 
 fn read(path: &Path) -> std::io::Result<String> {
     if !is_standard_input(path) {
-        return std::fs::read_to_string(path);
+        return bounded::read_text(path);
     }
-    let mut text = String::new();
-    std::io::stdin().read_to_string(&mut text)?;
-    Ok(text)
+    bounded::text(bounded::read(std::io::stdin().lock(), bounded::MOST_BYTES)?)
 }
 
 /// What is wrong with a file of hexadecimal bytes, and where.
@@ -83,10 +81,16 @@ fn take_token(digits: &str, bytes: &mut Vec<u8>) -> Result<(), (usize, String, &
         nibbles.push(value as u8);
     }
     if nibbles.len() > 1 && nibbles.len() % 2 == 1 {
-        return Err((0, digits.to_owned(), "has an odd number of digits: write two for each byte"));
+        return Err((0, start_of(digits), "has an odd number of digits: write two for each byte"));
     }
     bytes.extend(nibbles.chunks(2).map(|pair| pair.iter().fold(0, |byte, nibble| byte << 4 | nibble)));
     Ok(())
+}
+
+/// A token as an error names it: one that fills a line is not repeated whole.
+fn start_of(digits: &str) -> String {
+    const MOST: usize = 40;
+    if digits.len() <= MOST { digits.to_owned() } else { digits.chars().take(MOST).chain(['…']).collect() }
 }
 
 fn decode(decoder: &mut dyn Follower, lines: &[Vec<u8>]) -> Vec<Record> {

@@ -12,6 +12,7 @@ use std::io::{BufRead, BufReader, Read, Write};
 use std::time::{Duration, SystemTime};
 
 use super::{Column, Head, Reading, Record, RecordingError};
+use brushwork_link::bounded::BoundedLines;
 
 /// Names of the columns before the signals.
 const FIRST: [&str; 6] = ["utc", "time_s", "requested_s", "replied_s", "mark", "note"];
@@ -153,6 +154,9 @@ enum Role {
     Ignored,
 }
 
+/// No line is longer: a recording of every channel of this program has a line of some 2 KiB, and foreign ones have more columns.
+const MOST_LINE_BYTES: u64 = 1 << 20;
+
 /// Reads a whole file. `take` gets one record after the other, and stops the reading by giving `false`.
 ///
 /// # Errors
@@ -165,7 +169,8 @@ pub fn read(
 ) -> Result<(), RecordingError> {
     let mut input = BufReader::with_capacity(1 << 16, input);
     let delimiter = delimiter_of(&mut input).map_err(|source| io(path, source))?;
-    let mut reader = csv::ReaderBuilder::new().delimiter(delimiter).from_reader(input);
+    let lines = BoundedLines::new(input, MOST_LINE_BYTES);
+    let mut reader = csv::ReaderBuilder::new().delimiter(delimiter).from_reader(lines);
     let names = reader.headers().map_err(|error| broken(path, &error))?.clone();
     let (columns, roles) = roles_of(path, &names)?;
     let mut line = csv::StringRecord::new();

@@ -11,6 +11,7 @@ use serde_json::error::Category;
 
 use super::law::Report;
 use crate::messages::ReportFileMessage;
+use brushwork_link::bounded;
 
 /// What of a file tells whose it is.
 #[derive(Deserialize)]
@@ -64,7 +65,7 @@ pub fn read(path: &Path) -> Result<Report, Message> {
         ReportFileMessage::NotRead { path: path.display().to_string(), why: why.into() }.into()
     };
     let no_file = |error: std::io::Error| ReportFileMessage::NoFile { error: error.to_string() };
-    let text = std::fs::read_to_string(path).map_err(|error| reported(no_file(error)))?;
+    let text = bounded::read_text(path).map_err(|error| reported(no_file(error)))?;
     parse(&text).map_err(reported)
 }
 

@@ -14,6 +14,7 @@ use super::App;
 use crate::mcl::MclAction;
 use crate::model::script::Source;
 use crate::model::{Owner, Screen};
+use brushwork_link::bounded;
 
 impl App {
     /// Does what is asked of the MCL editor. What opens or asks something shows its screen.
@@ -89,7 +90,7 @@ impl App {
     /// Downloads a file that the maker's own compiler has written.
     fn download_image(&mut self, path: &Path) {
         let title = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-        match std::fs::read(path) {
+        match bounded::read_file(path) {
             Ok(bytes) => self.send_image(&bytes, Source { title, text: None }),
             Err(error) => {
                 let (on, error) = (path.display().to_string(), Message::error(error));

@@ -2,12 +2,13 @@
 
 use crate::messages::{WindowActMessage, WindowCauseMessage, WindowRemedyMessage};
 use brushwork_link::Message;
-use std::fs::{self, File};
-use std::io::{self, Read as _};
+use std::fs;
+use std::io;
 use std::path::Path;
 use std::time::SystemTime;
 
 use brushwork_link::Failure;
+use brushwork_link::bounded;
 use brushwork_link::files::replace_file;
 
 /// How letters are written.
@@ -175,9 +176,6 @@ pub struct Loaded {
     pub stamp: Option<Stamp>,
 }
 
-/// Longer files are no programs.
-const LONGEST_BYTES: u64 = 16 * 1024 * 1024;
-
 /// Reads a program.
 ///
 /// # Errors
@@ -188,20 +186,11 @@ pub fn read(path: &Path) -> Result<Loaded, Failure> {
         Failure::new(WindowActMessage::OpenFile, on, error, WindowRemedyMessage::CheckPath)
     };
     let stamp = Stamp::of(path).map_err(|error| failed(Message::error(error)))?;
-    let too_long = || failed(WindowCauseMessage::TooLong.into());
-    if stamp.length > LONGEST_BYTES {
-        return Err(too_long());
-    }
     // A device or a pipe may never end.
     if !fs::metadata(path).is_ok_and(|found| found.is_file()) {
         return Err(failed(WindowCauseMessage::NoFile.into()));
     }
-    let mut bytes = Vec::new();
-    let reading = File::open(path).and_then(|file| file.take(LONGEST_BYTES + 1).read_to_end(&mut bytes));
-    reading.map_err(|error| failed(Message::error(error)))?;
-    if bytes.len() as u64 > LONGEST_BYTES {
-        return Err(too_long());
-    }
+    let bytes = bounded::read_file(path).map_err(|error| failed(Message::error(error)))?;
     let (text, format) = decode(&bytes);
     Ok(Loaded { text, format, stamp: Some(stamp) })
 }

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::disk::Format;
 use super::doc_id::DocId;
+use brushwork_link::bounded;
 
 const LOCK: &str = "lock";
 
@@ -141,7 +142,7 @@ fn programs(folder: &Path) -> Vec<Kept> {
         .filter(|path| path.extension().is_some_and(|extension| extension == "json"))
         .collect();
     paths.sort();
-    let read = |path: PathBuf| serde_json::from_slice(&fs::read(path).ok()?).ok();
+    let read = |path: PathBuf| serde_json::from_slice(&bounded::read_file(&path).ok()?).ok();
     paths.into_iter().filter_map(read).collect()
 }
 

@@ -1,5 +1,6 @@
 //! The system's own disk.
 
+use crate::bounded;
 use std::fs::{self, File};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -12,7 +13,7 @@ pub struct Disk;
 
 impl Files for Disk {
     fn read(&self, path: &Path) -> io::Result<String> {
-        fs::read_to_string(path)
+        bounded::read_text(path)
     }
 
     fn list(&self, folder: &Path) -> io::Result<Vec<PathBuf>> {

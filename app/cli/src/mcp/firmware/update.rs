@@ -22,6 +22,7 @@ use brushwork_core::keep::{OpenUpdate, Store};
 use brushwork_core::session::Simulation;
 use brushwork_core::session::firmware::{LoaderPlace, Upload, UploadEvent};
 use brushwork_core::update::{self, Expected, Kept};
+use brushwork_link::bounded;
 
 /// How long the controller may take to stop its motors and enter the loader.
 const ENTER_LIMIT: Duration = Duration::from_secs(60);
@@ -31,7 +32,7 @@ const SLICE: Duration = Duration::from_millis(50);
 /// Updates, or resumes an update.
 pub fn run(args: &UpdateArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let target = client::target(&args.connect)?;
-    let bytes = std::fs::read(&args.file).map_err(|error| {
+    let bytes = bounded::read_file(&args.file).map_err(|error| {
         Exit::Failed.saying(CliScriptMessage::NotRead {
             file: args.file.display().to_string(),
             error: error.to_string(),

@@ -1,9 +1,9 @@
 //! Files of scripts: read with their encoding, `-` is standard input.
 
-use std::fs::File;
-use std::io::{self, Read as _};
+use std::io;
 use std::path::{Path, PathBuf};
 
+use brushwork_link::bounded;
 use brushwork_script::diagnostic::PlacedDiagnostic;
 use brushwork_script::mcl::{self, Compiled};
 use brushwork_script::text::Lines;
@@ -48,25 +48,11 @@ pub fn is_standard(path: &Path) -> bool {
 /// A sentence that names the file.
 pub fn read_bytes(path: &Path) -> Result<Vec<u8>, ReadError> {
     let read = if is_standard(path) {
-        read_bounded(io::stdin().lock())
+        bounded::read(io::stdin().lock(), bounded::MOST_BYTES)
     } else {
-        File::open(path).and_then(read_bounded)
+        bounded::read_file(path)
     };
     read.map_err(|source| ReadError { path: path.to_owned(), source })
-}
-
-/// A script has at most 2 MiB ([`mcl::LONGEST_TEXT`]), an image of the largest that can be built less than this.
-const MOST_BYTES: u64 = 16 * 1024 * 1024;
-
-/// All there is to read, unless it is too much: a device or a pipe may never end.
-fn read_bounded(source: impl io::Read) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    source.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > MOST_BYTES {
-        let what = "it goes on after 16 MiB, and no script or image is as long. Give a script of at most 2 MiB, or an image";
-        return Err(io::Error::new(io::ErrorKind::InvalidData, what));
-    }
-    Ok(bytes)
 }
 
 impl Source {

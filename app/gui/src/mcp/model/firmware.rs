@@ -18,11 +18,10 @@ use crate::files::{FileAction, FileAnswer, FileDialog, FileKind};
 use brushwork_core::keep::{OpenUpdate, Store, UnitId};
 use brushwork_core::session::firmware::{LoaderPlace, Upload, UploadEvent};
 use brushwork_core::update::{self, Compared, Expected, Kept, Verdict};
+use brushwork_link::bounded;
 
 /// How long reading all settings may take.
 const READ_LIMIT: Duration = Duration::from_secs(120);
-/// No image is larger; a file that is need not be read.
-const LARGEST_FILE_BYTES: u64 = 2_000_000;
 /// How long a line is left alone before the controller is looked for again after its restart.
 const LOOK_INTERVAL: Duration = Duration::from_secs(2);
 /// How often it is looked for by itself.
@@ -428,11 +427,7 @@ impl Firmware {
             path: path.display().to_string(),
             error: error.to_string(),
         };
-        let length = std::fs::metadata(path).map_err(reported)?.len();
-        if length > LARGEST_FILE_BYTES {
-            return Err(FirmwareMessage::TooLarge { bytes: length });
-        }
-        std::fs::read(path).map_err(reported)
+        bounded::read_file(path).map_err(reported)
     }
 }
 
