@@ -26,8 +26,9 @@ const LIFE_INTERVAL: Duration = Duration::from_millis(40);
 const STANDS_STILL: Duration = Duration::from_millis(350);
 /// A wait that took so much longer than it should was this process's own standing still.
 const OWN_LATENESS: Duration = Duration::from_millis(100);
-/// How long a killed program may take to be gone.
-const GONE_LIMIT: Duration = Duration::from_secs(2);
+/// How long a killed program is waited for. From the kill on it runs no code of its own, though on a busy computer its threads may take
+/// seconds to be gone; a write that was under way ends sooner.
+const GONE_LIMIT: Duration = Duration::from_millis(50);
 /// When the stop is written, counted from the death. The first may end up behind the torn packet of a program that died while it wrote, which a
 /// controller drops after 10 ms (MCP manual 2.2) or 5 ms (Motion Mind manual 5.1.1).
 const STOP_AT: [Duration; 4] =
