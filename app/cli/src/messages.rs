@@ -88,7 +88,7 @@ messages! {
     pub enum CliUnitsMessage {
         Begins { unit: String } "{unit}:",
         NoneAt { place: String } "No controller was found on {place}.",
-        NotTillTheEnd { units: String, of: usize } "Not done to the end on {units}; {of} controllers were asked for.",
+        NotTillTheEnd { units: String, of: usize } "Not done to the end on {units}, of {of} asked for.",
         NoneWritten "Nothing was written to any of them, since this was not to be had from all. Leave out who cannot take it, by --address.",
         WriteToAll { count: usize } "Write these changes, each to its own of the {count} controllers?",
         WriteToAllAndSave { count: usize } "Write these changes, each to its own of the {count} controllers, and save all settings of each to EEPROM?",

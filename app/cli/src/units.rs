@@ -96,7 +96,8 @@ fn print_together(several: &Several<'_>, out: &mut Output) -> Result<(), Exit> {
         let figure = |(head, key, digits): &(&str, &str, usize)| {
             let value = result["readings"][key].as_f64();
             let text = value.map_or_else(|| "-".to_owned(), |value| format!("{value:.digits$}"));
-            format!("{text:>width$}", width = head.chars().count())
+            // "-12.34" is as wide as a current gets.
+            format!("{text:>width$}", width = head.chars().count().max(6))
         };
         let active: Vec<&str> =
             result["conditions"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();

@@ -14,9 +14,9 @@ const TURN_OF_EACH: Duration = Duration::from_secs(1);
 /// What a row shows, in the order in which it does.
 const FIGURES: [(&str, Channel); 5] = [
     ("", Channel::MAIN_BATTERY),
-    ("", Channel::TEMPERATURE_1),
     ("M1 ", Channel::M1_CURRENT),
     ("M2 ", Channel::M2_CURRENT),
+    ("", Channel::TEMPERATURE_1),
     ("logic ", Channel::LOGIC_BATTERY),
 ];
 
@@ -53,7 +53,7 @@ impl Boards {
         }
     }
 
-    /// Battery, temperature and currents of a unit, as far as they were read: "24.0 V  30.0 °C  M1 0.10 A".
+    /// Battery, currents and temperature of a unit, as far as they were read: "24.0 V  M1 0.10 A".
     pub fn figures(&self, address: u8) -> String {
         let Some(board) = self.0.get(&address) else { return String::new() };
         let figure = |(name, channel): (&str, Channel)| {

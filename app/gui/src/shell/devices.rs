@@ -393,27 +393,36 @@ fn units_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
         return;
     }
     heading_ui(ui, "Units on this link");
-    for unit in &model.front.link.units {
-        let selected = model.front.link.selected == Some(unit.address);
+    ui.scope(|ui| {
+        ui.spacing_mut().item_spacing.y = 1.0;
+        for unit in &model.front.link.units {
+            board_ui(ui, &model.front.link, unit, commands);
+        }
+    });
+}
+
+/// One unit of several, in two lines, so that five of them leave room for the screens: who it is, then how it is.
+fn board_ui(ui: &mut Ui, link: &LinkView, unit: &Identity, commands: &mut Commands) {
+    let (state, said) = link.boards.state(unit.address);
+    ui.horizontal(|ui| {
+        let (rect, _) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
+        state.paint(ui, rect.center(), 4.0);
+        let selected = link.selected == Some(unit.address);
         if ui.selectable_label(selected, unit_text(unit)).clicked() && !selected {
             commands.push(Command::SelectUnit(unit.address));
         }
-        board_ui(ui, &model.front.link, unit);
-    }
-}
-
-/// How one unit of several is.
-fn board_ui(ui: &mut Ui, link: &LinkView, unit: &Identity) {
-    let (state, said) = link.boards.state(unit.address);
-    ui.horizontal(|ui| {
-        let (rect, _) = ui.allocate_exact_size(vec2(14.0, 12.0), Sense::hover());
-        state.paint(ui, rect.center(), 4.0);
-        ui.add(Label::new(RichText::new(&said).small()).truncate()).on_hover_text(&said);
     });
     let figures = link.boards.figures(unit.address);
-    if !figures.is_empty() {
-        ui.add(Label::new(RichText::new(&figures).small().weak()).truncate()).on_hover_text(&figures);
-    }
+    ui.scope(|ui| {
+        ui.spacing_mut().interact_size.y = 12.0;
+        ui.horizontal(|ui| {
+            let small = |text: &str| RichText::new(text).small();
+            ui.add(Label::new(small(&said)).truncate()).on_hover_text(&said);
+            if !figures.is_empty() {
+                ui.add(Label::new(small(&figures).weak()).truncate()).on_hover_text(&figures);
+            }
+        });
+    });
 }
 
 fn unit_text(unit: &Identity) -> String {
