@@ -17,10 +17,8 @@ use super::client::{self, CONNECT_LIMIT};
 use super::{Exit, Interrupt, Output, OutputError, family, say};
 use brushwork_core::session::{self, Session, SessionError, SessionOptions};
 use brushwork_core::stop::outside::{self, Asked, Holder};
-use brushwork_core::stop::{LineStop, StoppedUnit, matters};
+use brushwork_core::stop::{LineStop, STOP_LIMIT, StoppedUnit, matters};
 
-/// How long the controllers may take to confirm: late replies at 2400 bit/s take 6 s.
-const STOP_LIMIT: Duration = Duration::from_secs(10);
 /// How long a program that has let go of a line may take to be gone, its guardian included.
 const HAND_OVER_LIMIT: Duration = Duration::from_secs(2);
 /// Time between two tries to open its port.

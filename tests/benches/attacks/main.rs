@@ -49,7 +49,6 @@ fn args() -> Result<Args, String> {
     let mut args =
         Args { seconds: 60.0, inputs: u64::MAX, seed: 1, only: None, child: None, one: None, folder: None };
     let mut words = std::env::args().skip(1);
-    let is_inputs = |args: &mut Args| args.seconds = f64::INFINITY;
     while let Some(word) = words.next() {
         let mut value = || words.next().ok_or_else(|| format!("{word} has no value"));
         let number = |text: String| text.parse::<f64>().map_err(|error| format!("{text}: {error}"));
@@ -57,7 +56,7 @@ fn args() -> Result<Args, String> {
             "--seconds" => args.seconds = number(value()?)?,
             "--inputs" => {
                 args.inputs = value()?.parse().map_err(|error| format!("--inputs: {error}"))?;
-                is_inputs(&mut args);
+                args.seconds = f64::INFINITY;
             }
             "--seed" => args.seed = value()?.parse().map_err(|error| format!("--seed: {error}"))?,
             "--only" => args.only = Some(value()?),

@@ -13,7 +13,7 @@ use brushwork_link::device::{Addresses, Stopper};
 use crossbeam_channel::RecvTimeoutError;
 use serde::{Deserialize, Serialize};
 
-use super::LineStop;
+use super::{LineStop, STOP_LIMIT};
 
 /// Those who are heard at the same time.
 const GUESTS: usize = 8;
@@ -21,8 +21,6 @@ const GUESTS: usize = 8;
 const QUESTION_LIMIT: Duration = Duration::from_secs(1);
 /// No question is longer: all the addresses that there are, and the secret.
 const LONGEST_QUESTION: usize = 2048;
-/// How long the controllers may take to confirm: late replies at 2400 bit/s take 6 s.
-pub(super) const STOP_LIMIT: Duration = Duration::from_secs(10);
 /// How long an answer may take to be taken.
 const ANSWER_LIMIT: Duration = Duration::from_secs(1);
 

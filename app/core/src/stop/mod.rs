@@ -14,6 +14,9 @@ use serde_json::{Value, json};
 
 use crate::messages::StopMessage;
 
+/// How long the controllers may take to confirm: late replies at 2400 bit/s take 6 s.
+pub const STOP_LIMIT: Duration = Duration::from_secs(10);
+
 /// What of a stop is not plain, the gravest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Matter {
@@ -49,7 +52,10 @@ pub fn matters(report: &StopReport, units: &[Identity]) -> Vec<(Matter, Message)
 /// Where a unit is on its bus, as its family says it.
 #[must_use]
 pub fn place(units: &[Identity], address: u8) -> String {
-    let identity = units.iter().find(|identity| identity.address == address);
+    place_of(units.iter().find(|identity| identity.address == address), address)
+}
+
+fn place_of(identity: Option<&Identity>, address: u8) -> String {
     identity.map_or_else(|| format!("0x{address:02X}"), Identity::place)
 }
 
@@ -126,7 +132,7 @@ impl StoppedUnit {
         Self {
             address: stop.address,
             also_answers: identity.map_or_else(Vec::new, |unit| unit.also_answers.clone()),
-            place: identity.map_or_else(|| format!("0x{:02X}", stop.address), Identity::place),
+            place: place_of(identity, stop.address),
             model: identity.map(|unit| unit.title().to_owned()),
             family: identity.map(|unit| unit.family.key().to_owned()).unwrap_or_default(),
             is_node: identity.is_some_and(Identity::is_node),

@@ -5,11 +5,11 @@
 use std::collections::hash_map::RandomState;
 use std::fs::{self, File};
 use std::hash::BuildHasher as _;
-use std::io::{self, Read as _, Write as _};
+use std::io::{self, Write as _};
 use std::net::{SocketAddr, ToSocketAddrs as _};
 use std::path::{Path, PathBuf};
 
-use brushwork_link::ConnectTarget;
+use brushwork_link::{ConnectTarget, bounded};
 use serde::{Deserialize, Serialize};
 
 /// The folder of the notes.
@@ -57,8 +57,7 @@ impl Note {
     }
 
     fn read(path: &Path) -> Option<Self> {
-        let mut bytes = Vec::new();
-        File::open(path).ok()?.take(LONGEST).read_to_end(&mut bytes).ok()?;
+        let bytes = bounded::read(File::open(path).ok()?, LONGEST).ok()?;
         let note: Self = serde_json::from_slice(&bytes).ok()?;
         note.at.ip().is_loopback().then_some(note)
     }

@@ -11,9 +11,9 @@ use std::time::{Duration, Instant};
 use brushwork_link::ConnectTarget;
 use brushwork_link::device::{Addresses, Stopper};
 
-use super::LineStop;
-use super::door::{Answer, Door, Question, STOP_LIMIT, Word};
+use super::door::{Answer, Door, Question, Word};
 use super::note::{self, Note};
+use super::{LineStop, STOP_LIMIT};
 use crate::keep::folder;
 
 /// How long a connection on this computer may take.
