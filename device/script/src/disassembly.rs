@@ -150,6 +150,13 @@ impl Listing<'_> {
                 format!("{} {digits}", format.word())
             }
             Op::OutReal(digits) => digits.to_string(),
+            Op::Handle(event, to) => format!("event {event}, {}", self.label(to)),
+            Op::Events(on) => if on { "on" } else { "off" }.to_owned(),
+            Op::Wait(parts) => format!("1/{parts} s"),
+            Op::Board(command) => command.word().to_owned(),
+            Op::Send(count) | Op::Receive(count) => count.to_string(),
+            Op::Fill(to, from, count) => format!("{count} bytes to {to} from {from}"),
+            Op::Keep(first, count) => format!("{count} bytes from {first}"),
             Op::OutString(list, has_end) | Op::InString(list, has_end) => {
                 format!("{}{}", array(list), end(has_end))
             }

@@ -4,6 +4,7 @@
 #![doc = include_str!("../README.md")]
 
 pub mod arithmetic;
+pub mod board;
 pub mod debug;
 pub mod diagnostic;
 pub mod disassembly;

@@ -29,4 +29,13 @@ macro_rules! listed {
     };
 }
 
-pub(crate) use listed;
+/// Codes of errors and warnings: a constant each, and all with their meaning.
+macro_rules! coded {
+    ($($name:ident = $code:literal, $meaning:literal;)*) => {
+        $(#[doc = $meaning] pub const $name: &str = $code;)*
+        /// Every code with its meaning, in order.
+        pub const ALL: &[(&str, &str)] = &[$(($code, $meaning)),*];
+    };
+}
+
+pub(crate) use {coded, listed};

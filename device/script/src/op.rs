@@ -4,6 +4,7 @@
 //! takes in the order in which it was put there: `StoreAt` finds the value below the index.
 
 use crate::arithmetic::Type;
+use crate::board::Board;
 use crate::mcl::ast::{Binary, Format, Motion, Unary};
 use crate::mcl::registers::RegisterId;
 use crate::mcl::types::{Part, VarType};
@@ -138,6 +139,24 @@ pub enum Op {
     I2cIn(u32, Option<u32>),
     /// Sets all variables to zero.
     Clear,
+    /// From now on the event of this number calls what is there.
+    Handle(u32, u32),
+    /// Whether events call their handlers, or are kept until they may.
+    Events(bool),
+    /// Takes a count and waits until a clock that has so many ticks a second has ticked so often.
+    Wait(u32),
+    /// Takes the arguments of a command of the board; puts what it gives, if it gives anything.
+    Board(Board),
+    /// Takes the address of a byte of memory, puts that byte.
+    LoadByte,
+    /// Takes an address and sends so many bytes of memory from there on.
+    Send(u32),
+    /// Takes an address and stores there so many bytes that were received.
+    Receive(u32),
+    /// Copies constants into memory: first byte there, first byte of the data, how many.
+    Fill(u32, u32, u32),
+    /// Keeps so many bytes of memory from this one on, and puts them back when the subroutine returns.
+    Keep(u32, u32),
     /// Ends the program.
     End,
 }

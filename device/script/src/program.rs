@@ -104,6 +104,12 @@ pub mod limits {
     pub const NAMES: usize = 64 * 1024;
     /// Calls within calls.
     pub const CALLS: usize = 256;
+    /// Events, each of which may have a handler.
+    pub const EVENTS: u32 = 32;
+    /// Bytes that are sent or received at once.
+    pub const FRAME_BYTES: u32 = 256;
+    /// Bytes of memory that all subroutines together keep until they return.
+    pub const KEPT_BYTES: usize = 64 * 1024;
 }
 
 impl Variable {

@@ -23,6 +23,8 @@ pub use terminal::{Chunk, Terminal};
 pub use value::{Show, Value, one};
 pub use watch::{Setting, Watch};
 
+use crate::board::Board;
+use crate::op::Op;
 use crate::program::Program;
 use crate::vm::{Host, Machine, State};
 use breakpoint::Verdict;
@@ -113,6 +115,9 @@ impl Debugger {
         }
         self.notice_start(machine);
         for _ in 0..budget {
+            if !self.paused {
+                self.let_events_in(machine, host);
+            }
             if self.paused || self.stops_before(machine, host) || !self.step(machine, host) {
                 break;
             }
@@ -261,7 +266,10 @@ impl Debugger {
     fn stand(&mut self, reason: Reason) {
         self.paused = true;
         // The line that follows a PAUSE has not been looked at yet.
-        self.moved = matches!(reason, Reason::Asked(Some(Wait::Pause { .. } | Wait::Busy { .. })));
+        self.moved = matches!(
+            reason,
+            Reason::Asked(Some(Wait::Pause { .. } | Wait::Ticks { .. } | Wait::Busy { .. }))
+        );
         self.mode = Mode::Free;
         self.reason = reason;
     }
@@ -288,6 +296,16 @@ impl Debugger {
         }
     }
 
+    /// An event calls its handler before anyone looks which line comes next.
+    fn let_events_in(&mut self, machine: &mut Machine, host: &dyn Host) {
+        let depth = machine.calls().len();
+        if matches!(machine.state(), State::Ready | State::Pausing { .. }) {
+            machine.settle(host);
+        }
+        self.moved |= machine.calls().len() != depth;
+        self.follow_calls(depth, machine);
+    }
+
     /// Whether the script is to stand where it is.
     fn stops_before(&mut self, machine: &mut Machine, host: &mut dyn Host) -> bool {
         let can_go_on = match machine.state() {
@@ -297,6 +315,10 @@ impl Debugger {
         };
         if !self.moved || !can_go_on {
             return false;
+        }
+        if matches!(machine.program().ops.get(machine.at() as usize), Some(Op::Board(Board::Debug))) {
+            self.stand(Reason::Statement(machine.line()));
+            return true;
         }
         let Some(line) = self.lines.begins(machine.at()) else { return false };
         if let Some(reason) = self.verdict(line, machine, host).or_else(|| self.mode_ends(line, machine)) {

@@ -26,6 +26,11 @@ pub enum Wait {
         /// Until then, in time since power-up.
         until: Duration,
     },
+    /// Wait: nothing else runs then, no handler of an event either.
+    Ticks {
+        /// Until then, in time since power-up.
+        until: Duration,
+    },
     /// Something that is still being sent, read or written: I2C, the EEPROM, a slow port.
     Busy {
         /// Until then, in time since power-up.
@@ -75,6 +80,8 @@ pub enum Reason {
         /// What is wrong.
         why: String,
     },
+    /// The statement Debug of this line.
+    Statement(u32),
     /// A step is finished.
     Step(StepKind),
     /// The line that was to be run to.
@@ -106,6 +113,7 @@ impl Reason {
             Self::BadCondition { line, why } => {
                 format!("Paused at the breakpoint on line {line}: its condition cannot be worked out. {why}")
             }
+            Self::Statement(line) => format!("Paused at the Debug statement on line {line}."),
             Self::Step(kind) => format!("Paused at line {line}: {}.", kind.reported()),
             Self::Cursor => format!("Paused at line {line}, which was to be run to."),
             Self::Entry => format!("Paused before the first line that does something, line {line}."),
@@ -126,6 +134,13 @@ impl Wait {
             Self::Pause { until } => {
                 let left = until.saturating_sub(now).as_secs_f64();
                 format!("PAUSE at line {line} waits until {:.3} s, {left:.3} s more", until.as_secs_f64())
+            }
+            Self::Ticks { until } => {
+                let left = until.saturating_sub(now).as_secs_f64();
+                let until = until.as_secs_f64();
+                format!(
+                    "Wait at line {line} goes on until {until:.3} s, {left:.3} s more, and no event is served"
+                )
             }
             Self::Busy { until } => {
                 let left = until.saturating_sub(now).as_secs_f64();

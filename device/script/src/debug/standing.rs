@@ -14,8 +14,12 @@ pub fn waits(machine: &Machine) -> Option<Wait> {
     match machine.state() {
         State::Pausing { until } => {
             let op = machine.program().ops.get(machine.at().saturating_sub(1) as usize);
-            let is_pause = matches!(op, Some(Op::Pause));
-            Some(if is_pause { Wait::Pause { until: *until } } else { Wait::Busy { until: *until } })
+            let until = *until;
+            Some(match op {
+                Some(Op::Pause) => Wait::Pause { until },
+                Some(Op::Wait(_)) => Wait::Ticks { until },
+                Some(_) | None => Wait::Busy { until },
+            })
         }
         State::Listening { stream } => Some(Wait::Gets { stream: *stream }),
         State::Ready | State::Ended | State::Faulted(_) => None,
@@ -26,8 +30,10 @@ pub fn waits(machine: &Machine) -> Option<Wait> {
 #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 pub fn line_of(machine: &Machine, reason: &Reason) -> u32 {
     match reason {
-        Reason::Waiting(Wait::Pause { .. } | Wait::Busy { .. })
-        | Reason::Asked(Some(Wait::Pause { .. } | Wait::Busy { .. })) => machine.line_behind(),
+        Reason::Waiting(Wait::Pause { .. } | Wait::Ticks { .. } | Wait::Busy { .. })
+        | Reason::Asked(Some(Wait::Pause { .. } | Wait::Ticks { .. } | Wait::Busy { .. })) => {
+            machine.line_behind()
+        }
         _ => machine.line(),
     }
 }

@@ -1,5 +1,6 @@
 //! What a script sent, and what a person types for it: a host around the host that listens in.
 
+use crate::board::Board;
 use crate::mcl::ast::Motion;
 use crate::mcl::registers::RegisterId;
 use crate::mcl::words;
@@ -135,5 +136,18 @@ impl Host for Tapped<'_> {
 
     fn i2c_read(&mut self, count: usize, timeout: Option<Duration>) -> Option<Vec<u8>> {
         self.host.i2c_read(count, timeout)
+    }
+
+    fn board(&mut self, command: Board, arguments: &[u32]) -> u32 {
+        self.host.board(command, arguments)
+    }
+
+    fn send(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|byte| self.terminal.note(0, *byte));
+        self.host.send(bytes);
+    }
+
+    fn receive(&mut self) -> Vec<u8> {
+        self.host.receive()
     }
 }

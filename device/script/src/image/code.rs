@@ -3,6 +3,7 @@
 use super::bytes::{Reader, Writer};
 use super::error::ImageError;
 use crate::arithmetic::Type;
+use crate::board::Board;
 use crate::mcl::ast::{Binary, Format, Motion, Unary};
 use crate::mcl::registers::RegisterId;
 use crate::mcl::types::{Part, VarType};
@@ -78,6 +79,7 @@ listed_operands! {
     VarType "an unknown type of variable";
     Format "an unknown output modifier";
     Motion "an unknown motion command";
+    Board "an unknown command of the board";
     Unary "an unknown operator";
     Binary "an unknown operator";
 }
@@ -185,6 +187,15 @@ opcodes! {
     0x56 "i2c-in" "count" [count] I2cIn(count, None);
     0x57 "i2c-in-or" "count, target" [count to] I2cIn(count, Some(to));
     0x58 "clear" "" [] Clear;
+    0x60 "handle" "event, target" [event to] Handle(event, to);
+    0x61 "events" "flag" [on] Events(on);
+    0x62 "wait" "parts of a second" [parts] Wait(parts);
+    0x63 "board" "command" [command] Board(command);
+    0x64 "load-byte" "" [] LoadByte;
+    0x65 "send" "count" [count] Send(count);
+    0x66 "receive" "count" [count] Receive(count);
+    0x67 "fill" "byte of memory, byte of data, count" [to from count] Fill(to, from, count);
+    0x68 "keep" "byte of memory, count" [first count] Keep(first, count);
 }
 
 /// The name of an instruction in a disassembly.

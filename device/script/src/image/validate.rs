@@ -52,6 +52,19 @@ fn instruction(program: &Program, op: Op) -> Valid {
             require(number < program.loops, "a loop that is not there")
         }
         Op::OutText(at, count) => data(program, at, u64::from(count)),
+        Op::Handle(event, to) => {
+            target(program, to)?;
+            require(event < limits::EVENTS, "an event that is not there")
+        }
+        Op::Wait(parts) => require(parts > 0, "a wait of no length"),
+        Op::Send(count) | Op::Receive(count) => {
+            require(count <= limits::FRAME_BYTES, "more bytes than are sent at once")
+        }
+        Op::Fill(to, from, count) => {
+            bytes(program, to, count)?;
+            data(program, from, u64::from(count))
+        }
+        Op::Keep(first, count) => bytes(program, first, count),
         Op::I2cOut(count, _, otherwise) | Op::I2cIn(count, otherwise) => {
             otherwise.map_or(Ok(()), |to| target(program, to))?;
             few(count)
@@ -77,6 +90,11 @@ fn array(program: &Program, array: Array) -> Valid {
     let last = u64::from(array.length.max(1) - 1) * u64::from(array.stride);
     let end = u64::from(array.first.at) + last + u64::from(array.first.kind.bits());
     require(end <= u64::from(program.ram_bytes) * 8, "a variable outside the memory")
+}
+
+fn bytes(program: &Program, first: u32, count: u32) -> Valid {
+    let end = u64::from(first) + u64::from(count);
+    require(end <= u64::from(program.ram_bytes), "a variable outside the memory")
 }
 
 fn table(program: &Program, table: TableRef) -> Valid {

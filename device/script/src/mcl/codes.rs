@@ -1,14 +1,8 @@
 //! The codes of errors and warnings, one line of meaning each; the reference prints this table.
 
-macro_rules! codes {
-    ($($name:ident = $code:literal, $meaning:literal;)*) => {
-        $(#[doc = $meaning] pub const $name: &str = $code;)*
-        /// Every code with its meaning, in order.
-        pub const ALL: &[(&str, &str)] = &[$(($code, $meaning)),*];
-    };
-}
+use crate::listed::coded;
 
-codes! {
+coded! {
     BAD_CHARACTER = "E101", "A character that means nothing in a program.";
     BAD_NUMBER = "E102", "Something that begins like a number and is none.";
     NUMBER_TOO_LARGE = "E103", "A number that needs more than 32 bits.";

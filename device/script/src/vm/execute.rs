@@ -124,7 +124,7 @@ impl Machine {
                 self.at = self.at.saturating_sub(1);
                 self.state = State::Ended;
             }
-            other => self.stream(other, program, host)?,
+            other => self.on_board(other, program, host)?,
         }
         Ok(())
     }
@@ -176,7 +176,7 @@ impl Machine {
             return Err(FaultKind::CallsTooDeep);
         }
         let base = self.stack.len().checked_sub(count as usize).ok_or(FaultKind::StackEmpty)?;
-        self.calls.push(Call { returns_to: self.at, entered_at: to, base });
+        self.calls.push(Call { returns_to: self.at, entered_at: to, base, interrupted: None });
         self.at = to;
         Ok(())
     }
@@ -189,10 +189,15 @@ impl Machine {
         let call = self.calls.pop().ok_or(FaultKind::NoCall)?;
         self.stack.truncate(call.base);
         self.at = call.returns_to;
+        self.put_back();
+        if let Some(result) = call.interrupted {
+            self.result = result;
+            self.handler_returned();
+        }
         Ok(())
     }
 
-    fn pop_many(&mut self, count: usize) -> Result<Vec<u32>, FaultKind> {
+    pub(super) fn pop_many(&mut self, count: usize) -> Result<Vec<u32>, FaultKind> {
         let from = self.stack.len().checked_sub(count).ok_or(FaultKind::StackEmpty)?;
         Ok(self.stack.split_off(from))
     }

@@ -39,6 +39,14 @@ pub enum FaultKind {
     /// The stack is empty where a value is wanted: a subroutine was entered without GOSUB.
     #[error("the stack is empty: was the subroutine entered without GOSUB?")]
     StackEmpty,
+    /// A pointer that leads out of the memory.
+    #[error("the pointer is at byte {address}; the variables have {bytes} bytes")]
+    OutsideMemory {
+        /// The byte that was asked for, the first of those outside.
+        address: u32,
+        /// Bytes of memory.
+        bytes: u32,
+    },
     /// A jump out of the program; only a damaged image has one.
     #[error("a jump out of the program")]
     BadJump,

@@ -1,5 +1,6 @@
 //! What the machine asks of whatever it runs in.
 
+use crate::board::Board;
 use crate::mcl::ast::Motion;
 use crate::mcl::registers::RegisterId;
 use std::time::Duration;
@@ -41,4 +42,17 @@ pub trait Host {
 
     /// Reads bytes of the I2C bus; `None` if one did not come in time.
     fn i2c_read(&mut self, count: usize, timeout: Option<Duration>) -> Option<Vec<u8>>;
+
+    /// A command of the board with its arguments, and what it gives; a controller without it does nothing.
+    fn board(&mut self, _command: Board, _arguments: &[u32]) -> u32 {
+        0
+    }
+
+    /// Sends bytes of memory as one frame.
+    fn send(&mut self, _bytes: &[u8]) {}
+
+    /// The bytes of the frame that was received last; what is missing of those asked for is 0.
+    fn receive(&mut self) -> Vec<u8> {
+        Vec::new()
+    }
 }

@@ -34,6 +34,20 @@ impl Memory {
         &self.bytes
     }
 
+    /// So many bytes from this one on, as far as there are any.
+    #[must_use]
+    pub fn slice(&self, first: u32, count: u32) -> &[u8] {
+        let from = (first as usize).min(self.bytes.len());
+        &self.bytes[from..from.saturating_add(count as usize).min(self.bytes.len())]
+    }
+
+    /// Stores bytes from this one on, as far as there is room.
+    pub fn put(&mut self, first: u32, bytes: &[u8]) {
+        let from = (first as usize).min(self.bytes.len());
+        let count = bytes.len().min(self.bytes.len() - from);
+        self.bytes[from..from + count].copy_from_slice(&bytes[..count]);
+    }
+
     /// The value at a place, its sign spread.
     #[must_use]
     pub fn load(&self, cell: Cell) -> u32 {

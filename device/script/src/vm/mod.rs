@@ -1,6 +1,7 @@
 //! The virtual machine: runs a [`Program`] a bounded number of instructions at a time, in a [`Host`] that has the clock, the streams
 //! and the motors.
 
+mod board;
 mod counter;
 pub mod digits;
 mod execute;
@@ -10,6 +11,7 @@ mod memory;
 mod reading;
 mod streams;
 
+pub use board::{after_ticks, ticks};
 pub use fault::{Fault, FaultKind};
 pub use host::Host;
 pub use memory::{Memory, element};
@@ -17,6 +19,7 @@ pub use memory::{Memory, element};
 use crate::arithmetic::{self, Type};
 use crate::op::Array;
 use crate::program::{Program, limits};
+use board::{Events, Kept};
 use counter::Loop;
 use reading::Reading;
 use std::sync::Arc;
@@ -37,6 +40,8 @@ pub struct Machine {
     reading: Reading,
     result: (u32, Type),
     executed: u64,
+    events: Events,
+    kept: Vec<Kept>,
 }
 
 /// A subroutine that has not returned.
@@ -48,6 +53,8 @@ pub struct Call {
     pub entered_at: u32,
     /// Height of the stack without its arguments.
     base: usize,
+    /// Of the handler of an event: what the last subroutine had returned when the event came.
+    interrupted: Option<(u32, Type)>,
 }
 
 /// Where output goes.
@@ -95,6 +102,8 @@ impl Machine {
             reading: Reading::default(),
             result: (0, Type::Unsigned),
             executed: 0,
+            events: Events::default(),
+            kept: Vec::new(),
         }
     }
 
@@ -105,14 +114,7 @@ impl Machine {
 
     /// Runs at most `budget` instructions and says how far it is. A machine that ended or faulted stays where it is.
     pub fn run<H: Host + ?Sized>(&mut self, host: &mut H, budget: u32) -> &State {
-        if let State::Pausing { until } = self.state
-            && host.now() >= until
-        {
-            self.state = State::Ready;
-        }
-        if let State::Listening { .. } = self.state {
-            self.state = State::Ready;
-        }
+        self.settle(host);
         let program = self.program.clone();
         let mut left = budget;
         while left > 0 && matches!(self.state, State::Ready) {
@@ -129,6 +131,18 @@ impl Machine {
             }
         }
         &self.state
+    }
+
+    /// Ends a pause that is over, and lets an event that waits call its handler: the next instruction is known then.
+    pub(crate) fn settle<H: Host + ?Sized>(&mut self, host: &H) {
+        match self.state {
+            State::Pausing { until } if host.now() >= until => self.state = State::Ready,
+            State::Listening { .. } => self.state = State::Ready,
+            State::Ready | State::Pausing { .. } | State::Ended | State::Faulted(_) => {}
+        }
+        if matches!(self.state, State::Ready) {
+            self.serve_event();
+        }
     }
 
     fn fault(&mut self, at: u32, kind: FaultKind) {

@@ -3,6 +3,7 @@
 mod bounds;
 mod debug;
 mod debug_same;
+mod events;
 mod formatting;
 mod images;
 mod language;

@@ -6,6 +6,7 @@ pub mod examples;
 pub mod mutation;
 pub mod worst;
 
+use brushwork_script::board::Board;
 use brushwork_script::mcl::ast::Motion;
 use brushwork_script::mcl::{self, registers::RegisterId};
 use brushwork_script::vm::{Host, Machine, State};
@@ -24,6 +25,11 @@ pub struct TestHost {
     pub i2c: Vec<Vec<u8>>,
     /// What the I2C device answers; none is no device.
     pub i2c_reply: Option<Vec<u8>>,
+    /// Commands of the board, with the time of each.
+    pub board: Vec<(Duration, Board, Vec<u32>)>,
+    pub frames: Vec<Vec<u8>>,
+    /// What was received last.
+    pub received: Vec<u8>,
 }
 
 impl Host for TestHost {
@@ -66,6 +72,19 @@ impl Host for TestHost {
 
     fn i2c_read(&mut self, count: usize, _timeout: Option<Duration>) -> Option<Vec<u8>> {
         self.i2c_reply.as_ref().map(|reply| reply.iter().copied().cycle().take(count).collect())
+    }
+
+    fn board(&mut self, command: Board, arguments: &[u32]) -> u32 {
+        self.board.push((self.now, command, arguments.to_vec()));
+        42
+    }
+
+    fn send(&mut self, bytes: &[u8]) {
+        self.frames.push(bytes.to_vec());
+    }
+
+    fn receive(&mut self) -> Vec<u8> {
+        self.received.clone()
     }
 }
 
