@@ -4,19 +4,23 @@ use brushwork_tests::rust_source::{code_lines, without_tests};
 use brushwork_tests::workspace;
 
 /// What names a family in code.
-const NAMES: [&str; 9] = [
+const NAMES: [&str; 12] = [
     "mcp",
     "Mcp",
     "MCP",
     "motion_mind",
     "MotionMind",
     "MOTION_MIND",
+    "suprmotr",
+    "SuprMotr",
+    "SUPRMOTR",
     "RoboClaw",
     "packet_serial",
     "PacketSerial",
 ];
 /// The folders that are a family's own, wherever they are, and a file where one is enough.
-const FOLDERS: [&str; 4] = ["/mcp/", "/motion_mind/", "/mcp.rs", "/motion_mind.rs"];
+const FOLDERS: [&str; 6] =
+    ["/mcp/", "/motion_mind/", "/suprmotr/", "/mcp.rs", "/motion_mind.rs", "/suprmotr.rs"];
 /// The program's list of families.
 const LIST: &str = "app/src/lib.rs";
 /// Lines of code that may name one besides, benches included.
