@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use crate::characters::SELECT;
 use serde::{Deserialize, Serialize};
 
 /// The address of one controller, 0 to 15: on the wire one character, `0` to `9` and `A` to `F`.
@@ -108,7 +109,7 @@ impl Selection {
 
     /// The two bytes that select. No carriage return follows them: it would repeat the last line.
     pub const fn bytes(self) -> [u8; 2] {
-        [crate::SELECT, self.character()]
+        [SELECT, self.character()]
     }
 
     /// Whether the controller of that address listens from now on.

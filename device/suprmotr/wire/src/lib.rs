@@ -23,6 +23,7 @@
 #![doc = include_str!("../README.md")]
 
 mod address;
+mod characters;
 mod contradictions;
 mod describe;
 mod line;
@@ -36,6 +37,7 @@ mod table;
 mod tests;
 
 pub use address::{Address, InvalidAddress, Selection};
+pub use characters::{END_OF_REPORT, EXECUTE, SELECT};
 pub use contradictions::{CONTRADICTIONS, Contradiction};
 pub use describe::{describe_command, describe_line, describe_report, describe_single, describe_status};
 pub use line::{
@@ -55,10 +57,3 @@ pub use table::{
     Absent, CHANNELS, COMMANDS, CommandRow, Effect, FURTHEST_COUNTS, LAST_MACRO, MOST_COMMANDS, MOST_GAIN,
     Mnemonic, Parameter, Reports, Source,
 };
-
-/// Ctrl-A: the next character is an address.
-pub const SELECT: u8 = 0x01;
-/// Ends a report: end of text, behind the last line.
-pub const END_OF_REPORT: u8 = 0x03;
-/// Carriage return: carries out the line.
-pub const EXECUTE: u8 = b'\r';

@@ -3,6 +3,7 @@
 //! Assumed: a line longer than [`LINE_BUFFER`] is refused (error 09); a macro definition stands first in its line, elsewhere it is no
 //! command (01); a definition without commands lacks one (03), as does a comma with nothing behind it.
 
+use crate::characters::EXECUTE;
 use crate::number::Radix;
 use crate::status::ErrorCode;
 use crate::table::{Absent, COMMANDS, CommandRow, LAST_MACRO, MOST_COMMANDS, Mnemonic, Parameter};
@@ -169,7 +170,7 @@ impl Line {
         if bytes.len() > LINE_BUFFER {
             return Err(EncodeError::TooLong(bytes.len()));
         }
-        bytes.push(crate::EXECUTE);
+        bytes.push(EXECUTE);
         Ok(bytes)
     }
 

@@ -4,6 +4,7 @@
 //! passed over.
 
 use crate::address::Selection;
+use crate::characters::{END_OF_REPORT, EXECUTE, SELECT};
 use crate::line::LINE_BUFFER;
 use crate::single::Single;
 
@@ -38,7 +39,7 @@ impl Reader {
         if std::mem::take(&mut self.is_selecting) {
             return Some(Received::Selection(Selection::from_character(byte)));
         }
-        if byte == crate::SELECT {
+        if byte == SELECT {
             self.is_selecting = true;
             self.line.clear();
             return None;
@@ -50,9 +51,9 @@ impl Reader {
         }
         match byte {
             _ if !is_selected => {}
-            crate::EXECUTE if self.line.is_empty() => return Some(Received::Repeat),
-            crate::EXECUTE => return Some(Received::Line(std::mem::take(&mut self.line))),
-            b'\n' | crate::END_OF_REPORT => {}
+            EXECUTE if self.line.is_empty() => return Some(Received::Repeat),
+            EXECUTE => return Some(Received::Line(std::mem::take(&mut self.line))),
+            b'\n' | END_OF_REPORT => {}
             // One more than fits is enough to refuse the line.
             _ if self.line.len() > LINE_BUFFER => {}
             _ => self.line.push(byte),

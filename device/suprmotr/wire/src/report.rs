@@ -8,11 +8,11 @@
 //! Assumed: four hexadecimal digits for each half of TC, since two cannot show sixteen channels; analog values without sign or zeros.
 
 use crate::address::Address;
+use crate::characters::{END_OF_REPORT, EXECUTE, SELECT};
 use crate::line::{Command, Line, parse_listing};
 use crate::number::Radix;
 use crate::status::Status;
 use crate::table::{Mnemonic, Reports};
-use crate::{END_OF_REPORT, EXECUTE};
 
 const LETTER_STATUS: u8 = b'S';
 const LETTER_ANALOG: u8 = b'A';
@@ -256,8 +256,8 @@ pub fn parse_report(command: &Command, radix: Radix, sent: &[u8], bytes: &[u8]) 
 /// Bytes at the start of `received` that are the echo of `sent`, if the whole of it is there: with the selection in front of it or
 /// without, since a controller may have been selected only by it, and with a line feed behind a carriage return or without.
 pub fn echo_length(sent: &[u8], received: &[u8]) -> usize {
-    let begins = (0..sent.len().min(3))
-        .filter(|begin| sent[..*begin].first().is_none_or(|first| *first == crate::SELECT));
+    let begins =
+        (0..sent.len().min(3)).filter(|begin| sent[..*begin].first().is_none_or(|first| *first == SELECT));
     let mut echoes = begins.map(|begin| &sent[begin..]);
     let Some(echo) = echoes.find(|echo| received.starts_with(echo)) else { return 0 };
     let behind = received.get(echo.len());

@@ -70,11 +70,11 @@ bits! {
 }
 
 bits! {
-    /// The fourth byte: the inputs as they are.
+    /// The fourth byte: the inputs as they are. Assumed: a limit's bit is set while the switch is on, whichever level that is.
     inputs, INPUT_BITS:
-    1 POSITIVE "Positive limit" "the input of the positive limit switch";
-    2 REFERENCE "Reference" "the input of the reference switch";
-    3 NEGATIVE "Negative limit" "the input of the negative limit switch";
+    1 POSITIVE "Positive limit" "the positive limit switch is on";
+    2 REFERENCE "Reference" "the reference switch is on";
+    3 NEGATIVE "Negative limit" "the negative limit switch is on";
 }
 
 /// What TS and `%` report.
