@@ -93,8 +93,10 @@ impl SuprMotr {
             Mnemonic::XF if running.channels.is_on(wide) => running.program.skip_rest(),
             Mnemonic::XN | Mnemonic::XF => {}
             Mnemonic::MC | Mnemonic::EM => {
-                let commands = macro_number(number).map_or(&[][..], |number| self.eeprom.macro_of(number));
-                if !commands.is_empty() && !running.program.call(commands.to_vec()) {
+                // The table lets no other number through.
+                let called = macro_number(number).ok_or(ErrorCode::TooLarge)?;
+                let commands = self.eeprom.macro_of(called);
+                if !commands.is_empty() && !running.program.call(called, commands.to_vec()) {
                     return Err(ErrorCode::LineOverflow);
                 }
             }

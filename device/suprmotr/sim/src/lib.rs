@@ -24,5 +24,6 @@ mod unit;
 
 pub use bus::SuprMotrBus;
 pub use config::{CHANNELS, SuprMotrConfig, pin, place, slide, world_of};
+pub use program::Step;
 pub use store::{Eeprom, ImageError, Parameters};
 pub use unit::SuprMotr;

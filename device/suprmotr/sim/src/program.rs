@@ -30,7 +30,21 @@ struct Frame {
     next: usize,
     /// For each command the repeats that its RP still has to do; none where it was not reached, or is done.
     repeats: [Option<u32>; MOST_COMMANDS],
-    is_macro: bool,
+    /// The macro that it is; none for a line.
+    of_macro: Option<u8>,
+}
+
+/// A command that was begun, for those who look on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Step {
+    /// When.
+    pub at: Duration,
+    /// In which macro it stands; none for a line.
+    pub of_macro: Option<u8>,
+    /// Which of its commands it is, from 0.
+    pub index: usize,
+    /// The command.
+    pub command: Command,
 }
 
 /// The line that is carried out.
@@ -49,22 +63,22 @@ impl Program {
     /// Begins a line, in place of all that runs.
     pub fn start(&mut self, commands: Vec<Command>) {
         self.end();
-        self.frames.push(Frame::new(commands, false));
+        self.frames.push(Frame::new(commands, None));
     }
 
     /// Begins a macro, in place of all that runs.
-    pub fn start_macro(&mut self, commands: Vec<Command>) {
+    pub fn start_macro(&mut self, number: u8, commands: Vec<Command>) {
         self.end();
-        self.frames.push(Frame::new(commands, true));
+        self.frames.push(Frame::new(commands, Some(number)));
     }
 
     /// Calls a macro from the line or macro that runs; whether that goes so deep.
-    pub fn call(&mut self, commands: Vec<Command>) -> bool {
+    pub fn call(&mut self, number: u8, commands: Vec<Command>) -> bool {
         self.leave_finished();
         if self.frames.len() >= MOST_NESTED {
             return false;
         }
-        self.frames.push(Frame::new(commands, true));
+        self.frames.push(Frame::new(commands, Some(number)));
         true
     }
 
@@ -75,9 +89,14 @@ impl Program {
         self.has_reported = false;
     }
 
+    /// Whether anything is still to be done, or waited for.
+    pub fn is_running(&self) -> bool {
+        self.wait.is_some() || self.frames.iter().any(|frame| frame.next < frame.commands.len())
+    }
+
     /// Whether a macro is among it.
     pub fn is_in_macro(&self) -> bool {
-        self.frames.iter().any(|frame| frame.is_macro)
+        self.frames.iter().any(|frame| frame.of_macro.is_some())
     }
 
     /// What TI tells.
@@ -93,10 +112,11 @@ impl Program {
     }
 
     /// Takes the next command.
-    pub fn take(&mut self) -> Option<Command> {
+    pub fn take(&mut self, at: Duration) -> Option<Step> {
         let command = self.peek()?;
-        self.frames.last_mut()?.next += 1;
-        Some(command)
+        let frame = self.frames.last_mut()?;
+        frame.next += 1;
+        Some(Step { at, of_macro: frame.of_macro, index: frame.next - 1, command })
     }
 
     /// The RP just taken: the list it stands in begins anew, so often.
@@ -124,8 +144,8 @@ impl Program {
 }
 
 impl Frame {
-    fn new(commands: Vec<Command>, is_macro: bool) -> Self {
-        Self { commands, next: 0, repeats: [None; MOST_COMMANDS], is_macro }
+    fn new(commands: Vec<Command>, of_macro: Option<u8>) -> Self {
+        Self { commands, next: 0, repeats: [None; MOST_COMMANDS], of_macro }
     }
 }
 
@@ -146,13 +166,13 @@ mod tests {
         program.start(line(text));
         let mut done = Vec::new();
         while done.len() < most
-            && let Some(command) = program.take()
+            && let Some(Step { command, .. }) = program.take(Duration::ZERO)
         {
             match command.mnemonic {
                 Mnemonic::RP => program.repeat(command.value().expect("a count").unsigned_abs()),
                 Mnemonic::MC => {
                     let called = macros.iter().find(|(number, _)| command.number == Some(*number));
-                    let deep = program.call(called.map(|(_, text)| line(text)).unwrap_or_default());
+                    let deep = program.call(1, called.map(|(_, text)| line(text)).unwrap_or_default());
                     done.extend((!deep).then(|| "too deep".to_owned()));
                     if !deep {
                         program.end();
@@ -195,7 +215,7 @@ mod tests {
         let mut program = Program::default();
         program.start(line("MA0,RP2"));
         let mut left = Vec::new();
-        while let Some(command) = program.take() {
+        while let Some(Step { command, .. }) = program.take(Duration::ZERO) {
             if command.mnemonic == Mnemonic::RP {
                 program.repeat(2);
                 left.push(program.repeats_left());
@@ -208,11 +228,14 @@ mod tests {
     fn a_condition_passes_the_rest_of_its_own_list_by() {
         let mut program = Program::default();
         program.start(line("MR0,MR1"));
-        program.take();
-        assert!(program.call(line("MR2,MR3")));
-        program.take();
+        let take = |program: &mut Program| program.take(Duration::ZERO);
+        take(&mut program);
+        assert!(program.call(9, line("MR2,MR3")));
+        let inside = take(&mut program).expect("it has two");
+        assert_eq!((inside.of_macro, inside.index), (Some(9), 0));
         program.skip_rest();
-        assert_eq!(program.take(), Some(Command::with(Mnemonic::MR, 1)));
-        assert_eq!(program.take(), None);
+        let back = take(&mut program).expect("the line goes on");
+        assert_eq!((back.of_macro, back.index, back.command), (None, 1, Command::with(Mnemonic::MR, 1)));
+        assert_eq!(take(&mut program), None);
     }
 }

@@ -109,17 +109,18 @@ impl Eeprom {
         Self { address, parameters: Parameters::default(), macros: Default::default() }
     }
 
-    /// The text of an image, as [`Eeprom::text`] writes it.
+    /// The content of one board or of several, as [`Eeprom::text_of`] writes it.
     ///
     /// # Errors
     /// A clause that says what is wrong with it.
-    pub fn from_text(text: &str) -> Result<Self, ImageError> {
+    pub fn all_in(text: &str) -> Result<Vec<Self>, ImageError> {
         serde_json::from_str(text).map_err(|error| ImageError::Form(error.to_string()))
     }
 
-    /// Its content as JSON.
-    pub fn text(&self) -> String {
-        serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
+    /// The content of one board or of several as JSON.
+    pub fn text_of<'a>(eeproms: impl IntoIterator<Item = &'a Self>) -> String {
+        let all: Vec<&Self> = eeproms.into_iter().collect();
+        serde_json::to_string_pretty(&all).unwrap_or_default() + "\n"
     }
 
     /// The commands of a macro; none where there is no such macro.
@@ -204,14 +205,15 @@ mod tests {
             Command::plain(Mnemonic::RP),
         ];
         assert!(eeprom.define(14, calls));
-        let text = eeprom.text();
+        let other = Eeprom::factory(Address::FACTORY);
+        let text = Eeprom::text_of([&eeprom, &other]);
         assert!(text.contains("\"14\": \"MR-500,WS,RP\""), "{text}");
-        assert_eq!(Eeprom::from_text(&text), Ok(eeprom));
+        assert_eq!(Eeprom::all_in(&text), Ok(vec![eeprom, other]));
     }
 
     #[test]
     fn what_is_no_image_is_told_with_its_fault() {
-        let text = Eeprom::factory(Address::FACTORY).text();
+        let text = Eeprom::text_of([&Eeprom::factory(Address::FACTORY)]);
         for (from, to, clause) in [
             ("\"macros\": {}", "\"macros\": {\"15\": \"MR1\"}", "no macro 15"),
             ("\"macros\": {}", "\"macros\": {\"1\": \"MR1,QQ\"}", "macro 1: character 5"),
@@ -219,7 +221,7 @@ mod tests {
             ("\"address\": 0", "\"address\": 16", "no address"),
             ("velocity", "speed", "speed"),
         ] {
-            let said = Eeprom::from_text(&text.replacen(from, to, 1)).expect_err(to).to_string();
+            let said = Eeprom::all_in(&text.replacen(from, to, 1)).expect_err(to).to_string();
             assert!(said.contains(clause), "{to}: {said}");
         }
     }

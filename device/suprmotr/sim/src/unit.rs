@@ -5,7 +5,7 @@ use super::axis::Axis;
 use super::channels::Channels;
 use super::config::SuprMotrConfig;
 use super::outbox::Outbox;
-use super::program::{Program, Wait};
+use super::program::{Program, Step, Wait};
 use super::store::{Eeprom, Parameters};
 use brushwork_plant::bridge::BridgeOutput;
 use brushwork_plant::world::{Leds, UnitFault, World, WorldAction, WorldView};
@@ -28,6 +28,8 @@ pub struct SuprMotr {
     next_tick: Duration,
     pub(super) running: Running,
     has_power: bool,
+    is_traced: bool,
+    trace: Vec<Step>,
 }
 
 /// What a start begins anew.
@@ -69,6 +71,8 @@ impl SuprMotr {
             next_tick: TICK,
             running,
             has_power: true,
+            is_traced: false,
+            trace: Vec::new(),
         };
         unit.start(Duration::ZERO);
         Ok(unit)
@@ -181,6 +185,31 @@ impl SuprMotr {
         self.running.channels.analog_output()
     }
 
+    /// Whether a line, or a macro that it called, is still being carried out.
+    pub fn is_busy(&self) -> bool {
+        self.running.program.is_running()
+    }
+
+    /// What the last command was refused for, if it was.
+    pub fn error(&self) -> Option<ErrorCode> {
+        self.running.error
+    }
+
+    /// Whether the motor was let go since its position lagged too far behind.
+    pub fn has_excessive_error(&self) -> bool {
+        self.running.axis.flags().excessive_error
+    }
+
+    /// Begins to note the commands that lines and macros begin; [`SuprMotr::take_trace`] has to be called now and then from here on.
+    pub fn start_trace(&mut self) {
+        self.is_traced = true;
+    }
+
+    /// Takes what was noted since the last time.
+    pub fn take_trace(&mut self) -> Vec<Step> {
+        std::mem::take(&mut self.trace)
+    }
+
     /// What outlives its power.
     pub fn eeprom(&self) -> &Eeprom {
         &self.eeprom
@@ -238,7 +267,7 @@ impl SuprMotr {
             running.address = Address::new(running.channels.address_pins()).unwrap_or(self.eeprom.address);
         }
         running.is_selected = self.config.is_addressed;
-        running.program.start_macro(self.eeprom.macro_of(0).to_vec());
+        running.program.start_macro(0, self.eeprom.macro_of(0).to_vec());
         self.running = running;
         if self.config.is_addressed {
             self.say(self.running.ready_at, &[ReportLine::Text(VERSION.to_owned())]);
@@ -325,7 +354,8 @@ impl SuprMotr {
                 self.running.program.has_reported = true;
             }
             self.running.commands_left -= 1;
-            self.running.program.take();
+            let step = self.running.program.take(self.now);
+            self.trace.extend(step.filter(|_| self.is_traced));
             let refused = self.execute(command);
             if let Err(code) = refused {
                 self.running.error = Some(code);

@@ -217,3 +217,36 @@ fn reports_in_a_loop_come_no_faster_than_the_wire_lets_them() {
     let count = reply.iter().filter(|byte| **byte == 3).count();
     assert!((50..=57).contains(&count), "{count}");
 }
+
+/// What runs is told with its macro and its place in it.
+#[test]
+fn each_command_that_begins_can_be_looked_at() {
+    use brushwork_suprmotr_sim::{SuprMotr, SuprMotrConfig};
+    use brushwork_suprmotr_wire::{Address, Radix};
+    use std::time::Duration;
+    let mut unit = SuprMotr::new(SuprMotrConfig::new(Address::FACTORY)).expect("the slide is sound");
+    unit.advance(Duration::from_millis(1));
+    unit.receive(b"\x010MD3,CN1,WA10,CF1,RP1\r");
+    unit.start_trace();
+    unit.receive(b"CN2,MC3\r");
+    unit.advance(Duration::from_millis(100));
+    let steps: Vec<_> = unit
+        .take_trace()
+        .into_iter()
+        .map(|step| (step.at.as_millis(), step.of_macro, step.index, step.command.text(Radix::Decimal)))
+        .collect();
+    let expected = [
+        (1, None, 0, "CN2"),
+        (1, None, 1, "MC3"),
+        (1, Some(3), 0, "CN1"),
+        (1, Some(3), 1, "WA10"),
+        (11, Some(3), 2, "CF1"),
+        (11, Some(3), 3, "RP1"),
+        (11, Some(3), 0, "CN1"),
+        (11, Some(3), 1, "WA10"),
+        (21, Some(3), 2, "CF1"),
+        (21, Some(3), 3, "RP1"),
+    ];
+    assert_eq!(steps, expected.map(|(at, of_macro, index, text)| (at, of_macro, index, text.to_owned())));
+    assert!(!unit.is_busy() && unit.error().is_none() && unit.take_trace().is_empty());
+}

@@ -110,8 +110,8 @@ fn the_content_of_the_eeprom_makes_the_same_board_again() {
     bench.tell("DP99,EF,UD");
     bench.tell("MD4,MR500,WS100,RP9");
     bench.tell("DB6");
-    let text = bench.unit().eeprom().text();
-    let eeprom = Eeprom::from_text(&text).expect("it was just written");
+    let text = Eeprom::text_of([bench.unit().eeprom()]);
+    let eeprom = Eeprom::all_in(&text).expect("it was just written").remove(0);
     let config = SuprMotrConfig { eeprom, ..SuprMotrConfig::new(Address::FACTORY) };
     let mut again = Bench::line(vec![config]);
     again.raw(b"\x016");
