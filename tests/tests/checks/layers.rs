@@ -8,7 +8,7 @@ use brushwork_tests::rust_source::{code_lines, without_tests};
 use brushwork_tests::workspace::{self, DependencyKind, Member, Metadata};
 
 /// The arrows that ship: a crate and the crates of this workspace it may use.
-const ARROWS: [(&str, &[&str]); 27] = [
+const ARROWS: [(&str, &[&str]); 28] = [
     (
         "brushwork",
         &[
@@ -162,6 +162,7 @@ const ARROWS: [(&str, &[&str]); 27] = [
     ("brushwork-motion-mind-client", &["brushwork-link", "brushwork-motion-mind-wire", "brushwork-values"]),
     ("brushwork-motion-mind-axis", &["brushwork-motion-mind-wire", "brushwork-tuning"]),
     ("brushwork-motion-mind-sim", &["brushwork-motion-mind-wire", "brushwork-plant", "brushwork-values"]),
+    ("brushwork-suprmotr-macros", &["brushwork-script", "brushwork-suprmotr-wire"]),
     ("brushwork-suprmotr-sim", &["brushwork-plant", "brushwork-suprmotr-wire", "brushwork-values"]),
     ("brushwork-suprmotr-wire", &["brushwork-values"]),
     ("brushwork-script", &[]),
@@ -243,7 +244,7 @@ const IMPURE: [&str; 9] = [
 ];
 
 /// The pure parts: a source folder and the modules in it that are the named exception.
-const PURE: [(&str, &[&str]); 13] = [
+const PURE: [(&str, &[&str]); 14] = [
     ("device/canopen/src", &[]),
     ("device/values/src", &[]),
     ("device/mcp/axis/src", &[]),
@@ -252,6 +253,7 @@ const PURE: [(&str, &[&str]); 13] = [
     ("device/motion_mind/axis/src", &[]),
     ("device/motion_mind/wire/src", &[]),
     ("device/motion_mind/sim/src", &[]),
+    ("device/suprmotr/macros/src", &[]),
     ("device/suprmotr/sim/src", &[]),
     ("device/suprmotr/wire/src", &[]),
     ("device/plant/src", &["server"]),
