@@ -73,7 +73,9 @@ pub fn parse(text: &str) -> Result<AddressList, String> {
 
 /// What `--address` of a line takes, which may be a CAN bus.
 pub fn parse_on_line(text: &str) -> Result<AddressList, String> {
-    let number = |text: &str| parse_byte(text).filter(|number| (1..=0x87).contains(number));
+    let number = |text: &str| {
+        parse_number(text).or_else(|| parse_byte(text).filter(|number| (1..=0x87).contains(number)))
+    };
     read(text, number, &format!("{}, CANopen node at 1 to 127", addresses_text())).map(each_once)
 }
 
@@ -91,7 +93,8 @@ fn each_once(list: AddressList) -> AddressList {
 
 /// What `--address` of units that are made takes. One that is named twice stays so, which their family refuses.
 pub fn parse_made(text: &str) -> Result<AddressList, String> {
-    let list = read(text, parse_byte, &addresses_text())?;
+    let number = |text: &str| parse_number(text).or_else(|| parse_byte(text));
+    let list = read(text, number, &addresses_text())?;
     if list == AddressList::All {
         return Err("a unit that is made has an address: name it, or several as 0x80-0x84".to_owned());
     }

@@ -1,5 +1,6 @@
 //! A family of controllers by its names, addresses and models, and the list of those that this program has.
 
+use brushwork_values::parse_byte;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
 use std::str::FromStr;
@@ -37,6 +38,11 @@ pub trait Family: Send + Sync {
     /// An address as it is written in files and on the command line.
     fn address_text(&self, number: u8) -> String {
         number.to_string()
+    }
+
+    /// The number of an address as it is written in files and on the command line, decimal or hexadecimal, whether a unit can have it or not.
+    fn address_named(&self, text: &str) -> Option<u8> {
+        parse_byte(text)
     }
 
     /// Whether there is firmware of this number, and if not, why, as a clause: "is no firmware generation; there are 1 to 4".

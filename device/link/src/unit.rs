@@ -3,7 +3,6 @@
 //! The families' own types are narrower; these are what settings, profiles and screens carry.
 
 use crate::family::{FamilyRef, families};
-use brushwork_values::parse_byte;
 use serde::{Serialize, Serializer};
 use std::fmt;
 
@@ -42,14 +41,15 @@ impl UnitAddress {
     /// The address as the family writes it in files and on the command line.
     #[must_use]
     pub fn parse(family: FamilyRef, text: &str) -> Option<Self> {
-        Self::new(family, parse_byte(text)?)
+        Self::new(family, family.address_named(text)?)
     }
 }
 
-/// The number of a unit as it is typed, decimal or hexadecimal, if a unit of any family can have it.
+/// The number of a unit as it is typed, if a unit of any family can have it.
 #[must_use]
 pub fn parse_number(text: &str) -> Option<u8> {
-    parse_byte(text).filter(|number| families().iter().any(|family| family.has_address(*number)))
+    let named = families().iter().filter_map(|family| UnitAddress::parse(*family, text));
+    named.map(UnitAddress::get).next()
 }
 
 impl Serialize for UnitAddress {

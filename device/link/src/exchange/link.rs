@@ -290,6 +290,23 @@ impl Exchange {
         self.transport.byte_time()
     }
 
+    /// The rate of the line, bits a second, where that is known.
+    #[must_use]
+    pub fn baud(&self) -> Option<u32> {
+        let byte_time_s = self.byte_time()?.as_secs_f64();
+        // Ten bits a byte; the cast saturates.
+        (byte_time_s > 0.0).then(|| (10.0 / byte_time_s).round() as u32)
+    }
+
+    /// Changes the rate of the line; `false` where it has none that could be changed.
+    ///
+    /// # Errors
+    /// The port refuses it.
+    pub fn set_baud(&mut self, baud: u32) -> Result<bool, ExchangeError> {
+        self.unsettled = true;
+        Ok(self.transport.set_baud(baud)?)
+    }
+
     /// A second way to write to the line, for another process.
     ///
     /// # Errors

@@ -26,6 +26,14 @@ pub trait Transport: Send {
     /// Time one byte takes on the wire (ten bits); `None` where no baud rate limits it.
     fn byte_time(&self) -> Option<Duration>;
 
+    /// Changes the rate of the line, bits a second; `false` where it has none that could be changed.
+    ///
+    /// # Errors
+    /// The port refuses it.
+    fn set_baud(&mut self, _baud: u32) -> Result<bool, TransportError> {
+        Ok(false)
+    }
+
     /// How long an answer may take beyond its time on the wire: the controller's turnaround, the
     /// adapter's latency timer and the operating system together.
     fn latency(&self) -> Duration {

@@ -37,6 +37,10 @@ impl Transport for Late {
         self.inner.byte_time()
     }
 
+    fn set_baud(&mut self, baud: u32) -> Result<bool, TransportError> {
+        self.inner.set_baud(baud)
+    }
+
     fn latency(&self) -> Duration {
         self.latency
     }

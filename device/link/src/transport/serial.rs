@@ -30,11 +30,10 @@ impl SerialTransport {
         let second = second_way(path);
         let mut port = open_port(path, baud).map_err(|error| explain(path, baud, &error))?;
         let _ = port.write_request_to_send(true);
-        let byte_time = Duration::from_secs(10) / baud.max(1);
         Ok(Self {
             port,
             path: path.to_owned(),
-            byte_time,
+            byte_time: byte_time(baud),
             timeout: WRITE_TIMEOUT,
             #[cfg(unix)]
             second,
@@ -96,6 +95,12 @@ impl Transport for SerialTransport {
         Some(self.byte_time)
     }
 
+    fn set_baud(&mut self, baud: u32) -> Result<bool, TransportError> {
+        self.port.set_baud_rate(baud).map_err(|error| failed("setting up", error))?;
+        self.byte_time = byte_time(baud);
+        Ok(true)
+    }
+
     #[cfg(unix)]
     fn second_way(&self) -> io::Result<Stdio> {
         match &self.second {
@@ -103,6 +108,11 @@ impl Transport for SerialTransport {
             Err(error) => Err(io::Error::new(error.kind(), error.to_string())),
         }
     }
+}
+
+/// Ten bits.
+fn byte_time(baud: u32) -> Duration {
+    Duration::from_secs(10) / baud.max(1)
 }
 
 /// The port as a plain file. It does not wait for a carrier, nor does it become this program's terminal.
@@ -225,7 +235,9 @@ mod tests {
     #[test]
     fn the_time_of_a_byte_is_ten_bits() {
         let (_master, path) = pseudo_terminal();
-        let transport = SerialTransport::open(&path, 1_000_000).unwrap();
+        let mut transport = SerialTransport::open(&path, 1_000_000).unwrap();
         assert_eq!(transport.byte_time(), Some(Duration::from_micros(10)));
+        assert!(transport.set_baud(500_000).unwrap(), "at another rate from now on");
+        assert_eq!(transport.byte_time(), Some(Duration::from_micros(20)));
     }
 }
