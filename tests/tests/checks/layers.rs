@@ -8,7 +8,7 @@ use brushwork_tests::rust_source::{code_lines, without_tests};
 use brushwork_tests::workspace::{self, DependencyKind, Member, Metadata};
 
 /// The arrows that ship: a crate and the crates of this workspace it may use.
-const ARROWS: [(&str, &[&str]); 28] = [
+const ARROWS: [(&str, &[&str]); 29] = [
     (
         "brushwork",
         &[
@@ -165,6 +165,7 @@ const ARROWS: [(&str, &[&str]); 28] = [
     ("brushwork-suprmotr-macros", &["brushwork-script", "brushwork-suprmotr-wire"]),
     ("brushwork-suprmotr-sim", &["brushwork-plant", "brushwork-suprmotr-wire", "brushwork-values"]),
     ("brushwork-suprmotr-wire", &["brushwork-values"]),
+    ("brushwork-suprmotr-client", &["brushwork-link", "brushwork-suprmotr-wire", "brushwork-values"]),
     ("brushwork-script", &[]),
     ("brushwork-values", &[]),
     ("brushwork-raster", &[]),

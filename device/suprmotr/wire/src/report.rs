@@ -254,12 +254,19 @@ pub fn parse_report(command: &Command, radix: Radix, sent: &[u8], bytes: &[u8]) 
 }
 
 /// Bytes at the start of `received` that are the echo of `sent`, if the whole of it is there: with the selection in front of it or
-/// without, since a controller may have been selected only by it, and with a line feed behind a carriage return or without.
+/// without, since a controller may have been selected only by it; up to the end of a line or from there, since a line may switch the
+/// echo; and with a line feed behind a carriage return or without.
 pub fn echo_length(sent: &[u8], received: &[u8]) -> usize {
-    let begins =
-        (0..sent.len().min(3)).filter(|begin| sent[..*begin].first().is_none_or(|first| *first == SELECT));
-    let mut echoes = begins.map(|begin| &sent[begin..]);
-    let Some(echo) = echoes.find(|echo| received.starts_with(echo)) else { return 0 };
+    let is_selection = |begin: usize| begin == 0 || sent.first() == Some(&SELECT);
+    let ends: Vec<usize> = (0..sent.len()).filter(|at| sent[*at] == EXECUTE).map(|at| at + 1).collect();
+    let begins = (0..sent.len().min(3)).filter(|begin| is_selection(*begin)).chain(ends.iter().copied());
+    let echoes = begins.flat_map(|begin| {
+        let ends = ends.iter().copied().chain([sent.len()]);
+        ends.filter(move |end| *end > begin).map(move |end| &sent[begin..end])
+    });
+    let Some(echo) = echoes.filter(|echo| received.starts_with(echo)).max_by_key(|echo| echo.len()) else {
+        return 0;
+    };
     let behind = received.get(echo.len());
     echo.len() + usize::from(echo.ends_with(&[EXECUTE]) && behind == Some(&b'\n'))
 }

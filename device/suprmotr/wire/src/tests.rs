@@ -443,6 +443,10 @@ fn an_echo_is_taken_off_whole_or_not_at_all() {
     for heard in ["TP\r0P0:+7\r\n\x03", "TP\r\n0P0:+7\r\n\x03", "0P0:+7\r\n\x03"] {
         assert_eq!(done("TP", b"TP\r", heard).number(Mnemonic::TP), Some(7), "{heard:?}");
     }
+    // A line that switches the echo off or on is echoed in part.
+    for heard in ["EF\r0S:80 80 01 00 00 00\r\n\x03", "%0S:80 80 01 00 00 00\r\n\x03"] {
+        assert_eq!(done("TS", b"\x010EF\r%", heard).status().unwrap().operation, operation::ADDRESSED);
+    }
     assert_eq!(echo_length(b"MA5\r", b"MA5\r"), 4);
     assert_eq!(echo_length(b"MA5\r", b"MA5"), 0);
     assert_eq!(echo_length(b"", b"P:"), 0);
