@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use super::terminal::TerminalArgs;
 use super::tune::TuneArgs;
 use brushwork_canopen::adapter::Form;
 use brushwork_link::FamilyChoice;
@@ -73,6 +74,9 @@ pub enum Command {
     /// Run simulated controllers on a pseudo-terminal or a TCP port.
     #[command(display_order = 20)]
     Sim(SimArgs),
+    /// Send commands to a controller as they are typed.
+    #[command(display_order = 21)]
+    Terminal(TerminalArgs),
     /// Print the reference of a family's protocol.
     #[command(display_order = 30)]
     Protocol(ProtocolArgs),
@@ -121,9 +125,12 @@ pub struct ListArgs {
     /// Print JSON.
     #[arg(long)]
     pub json: bool,
-    /// Also open each port and ask the addresses 0x80 to 0x87 who is there.
+    /// Also open each port and ask who is there.
     #[arg(long)]
     pub scan: bool,
+    /// List this line instead of the ports that there are; may be given again.
+    #[arg(long, short = 'c', value_name = "TARGET", requires = "scan")]
+    pub connect: Vec<String>,
 }
 
 /// Arguments of `brushwork nodes`.

@@ -18,6 +18,14 @@ pub fn after(command: &str, shared: &[&str], note: &str) -> String {
     format!("Examples:{}{note}", lines.collect::<String>())
 }
 
+/// The end of the page of `brushwork terminal`.
+pub fn terminal_help() -> String {
+    let typed = families().iter().map(|family| family.examples().typed).filter(|typed| !typed.is_empty());
+    let typed = typed.map(|typed| format!("\n{typed}")).collect::<String>();
+    let note = "Without commands each line of standard input is one. Commands that move the motor are refused; use `brushwork drive`.";
+    after("terminal", &[], &format!("{note}{typed}"))
+}
+
 /// The model that is simulated where none is named.
 pub fn model() -> &'static str {
     families().first().map_or("", |family| family.examples().model)

@@ -6,6 +6,7 @@ use std::sync::OnceLock;
 
 use brushwork_core::session::line::SimulatedLine;
 use brushwork_core::settings::Act;
+use brushwork_link::device::Described;
 use brushwork_link::family::Model;
 use brushwork_link::{DeviceHandle, FamilyChoice, FamilyRef, Identity, SettingsImage, SettingsTable, Wire};
 use brushwork_values::Motor;
@@ -88,6 +89,11 @@ pub trait Family: Send + Sync {
         Ok(0)
     }
 
+    /// How a unit takes commands as a person types them; `None` where it takes none.
+    fn terminal(&self, _identity: &Identity) -> Option<Box<dyn Terminal>> {
+        None
+    }
+
     /// What an act on the settings does to a motor, where that is to be known before.
     fn note_of(&self, _act: &Act) -> Option<&'static str> {
         None
@@ -113,6 +119,32 @@ pub trait Family: Send + Sync {
     fn stopped_addresses(&self) -> Vec<u8>;
 }
 
+/// How a unit takes commands as a person types them.
+pub trait Terminal {
+    /// How the unit is set up, in a few words.
+    fn set_up(&self) -> String;
+
+    /// The bytes of a typed command.
+    ///
+    /// # Errors
+    /// A sentence: it is none.
+    fn bytes_of(&self, line: &str) -> Result<Vec<u8>, String>;
+
+    /// Whether bytes stop the motor besides what they are for.
+    fn stops_the_motor(&self, _bytes: &[u8]) -> bool {
+        false
+    }
+
+    /// Bytes as a person reads them.
+    fn shown(&self, bytes: &[u8]) -> String;
+
+    /// Bytes that are sent, in words.
+    fn describe_sent(&self, bytes: &[u8]) -> Described;
+
+    /// What came back, in words.
+    fn describe_received(&self, sent: &[u8], reply: &[u8]) -> Described;
+}
+
 /// What a family gives to the help pages.
 #[derive(Clone, Copy, Debug)]
 pub struct Examples {
@@ -122,6 +154,8 @@ pub struct Examples {
     pub options: &'static str,
     /// Lines for the examples of a command, without the program's name: "protocol --family NAME COMMAND".
     pub lines: &'static [&'static str],
+    /// What its terminal takes, as a sentence; empty where it has none.
+    pub typed: &'static str,
 }
 
 /// What a list says of a simulated model.

@@ -33,6 +33,7 @@ pub mod shared_args;
 mod sim;
 mod status;
 mod stop;
+mod terminal;
 mod tool;
 pub mod tune;
 mod units;
@@ -106,6 +107,7 @@ fn dispatch(
         Command::Stop(args) => stop::run(args, out, interrupt),
         Command::Settings(args) => settings::run(args, out, interrupt),
         Command::Sim(args) => sim::run(args, typed, out, interrupt),
+        Command::Terminal(args) => terminal::run(args, out, interrupt),
         Command::Protocol(args) => protocol::run(args, out),
         Command::Monitor(args) => monitor::run(args, out, interrupt),
         Command::Tune(args) => Ok(tune::run(args, out, interrupt)),

@@ -33,14 +33,10 @@ struct SimulatedRow {
 
 /// Lists and prints.
 pub fn run(args: &ListArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
-    let ports = list_ports().unwrap_or_else(|failure| {
-        say(failure.to_string());
-        Vec::new()
-    });
     let mut rows = Vec::new();
-    for port in ports {
-        let units = args.scan.then(|| scan(&port.name, interrupt));
-        rows.push(PortRow { description: describe(&port), connect: port.name, units });
+    for (connect, description) in lines(&args.connect) {
+        let units = args.scan.then(|| scan(&connect, interrupt));
+        rows.push(PortRow { connect, description, units });
         if interrupt.is_raised() {
             return Err(Exit::Interrupted);
         }
@@ -49,6 +45,18 @@ pub fn run(args: &ListArgs, out: &mut Output, interrupt: &Interrupt) -> Result<E
     let printed = if args.json { out.json(&listing) } else { print(&listing, out) };
     printed?;
     Ok(Exit::Done)
+}
+
+/// The lines that are named, or the ports that there are, each with what is known of it.
+fn lines(named: &[String]) -> Vec<(String, String)> {
+    if !named.is_empty() {
+        return named.iter().map(|line| (line.clone(), "named line".to_owned())).collect();
+    }
+    let ports = list_ports().unwrap_or_else(|failure| {
+        say(failure.to_string());
+        Vec::new()
+    });
+    ports.into_iter().map(|port| (port.name.clone(), describe(&port))).collect()
 }
 
 /// What the operating system knows of a port.
@@ -79,7 +87,13 @@ fn simulated() -> Vec<SimulatedRow> {
 
 /// Asks all addresses of a port who is there. Reading moves no motor.
 fn scan(path: &str, interrupt: &Interrupt) -> Vec<Identity> {
-    let Ok(target) = path.parse::<ConnectTarget>() else { return Vec::new() };
+    let target = match path.parse::<ConnectTarget>() {
+        Ok(target) => target,
+        Err(error) => {
+            say(error.to_string());
+            return Vec::new();
+        }
+    };
     let options = SessionOptions { poll: PollRate::Off, ..SessionOptions::default() };
     let session = match session::open(&target, options, SystemClock::shared(), None) {
         Ok(session) => session,

@@ -77,8 +77,8 @@ messages! {
         NoCtrlC { error: String } "Could not take over Ctrl-C, without which motors could not be stopped: {error}.",
         GuardianByHand "`brushwork guardian` is started by the program itself, for a line that it arms.",
         NoQpps "The motor's QPPS is 0, so a position move would not move. Give --speed-limit or set QPPS first.",
-        OtherFamily { title: String, family: &'static str } "{title} is no {family}; its commands are put together in the window's Traffic screen.",
-        TerminalOf { title: String, unit: String, port: String, mode: String, protocol: String } "{title} {unit} on {port}: {mode}, {protocol}.",
+        NoTerminal { title: String } "{title} takes no typed commands; they are put together in the window's Traffic screen.",
+        TerminalOf { title: String, unit: String, port: String, set_up: String } "{title} {unit} on {port}: {set_up}.",
         TerminalStops "Note: the motor is stopped for this, and what it changes in EEPROM stays.",
     }
 }

@@ -284,6 +284,7 @@ fn connect_of(command: &mut Command) -> Option<&mut ConnectArgs> {
         | Command::Drive(_)
         | Command::Stop(_)
         | Command::Sim(_)
+        | Command::Terminal(_)
         | Command::Protocol(_)
         | Command::Monitor(_)
         | Command::Tune(_) => None,

@@ -51,6 +51,7 @@ impl Family for McpCommands {
             model: "mcp266",
             options: "[,generation=4,preset=NAME]",
             lines: &["sim --model mcp2166 --generation 4 --preset flywheel --tcp 127.0.0.1:7000"],
+            typed: "",
         }
     }
 

@@ -1,4 +1,4 @@
-//! The Motion Mind 3 on the command line: its terminal, and its part of the shared commands.
+//! The Motion Mind 3 on the command line: its part of the shared commands.
 
 mod decoder;
 mod sim;
@@ -12,9 +12,8 @@ use brushwork_motion_mind_wire::{reference, reference_entry, reference_page};
 use clap::{Arg, ArgMatches, Args as _, Command};
 
 use crate::exit::Exit;
-use crate::family::{Examples, Family, Page, Simulated, SimulatedModel};
+use crate::family::{Examples, Family, Page, Simulated, SimulatedModel, Terminal};
 use crate::monitor::follower::Follower;
-use crate::tool::Tool;
 use brushwork_core::settings::Act;
 use brushwork_core::words::capital;
 use decoder::Decoder;
@@ -29,11 +28,6 @@ impl Family for MotionMindCommands {
         MOTION_MIND
     }
 
-    fn commands(&self) -> Vec<Tool> {
-        let about = "Send commands to a Motion Mind as they are typed";
-        vec![Tool::new("terminal", 21, about, terminal::run)]
-    }
-
     fn examples(&self) -> Examples {
         Examples {
             model: MODEL,
@@ -42,9 +36,12 @@ impl Family for MotionMindCommands {
                 "drive --connect /dev/ttyUSB0,family=motion-mind --by -500 --for 2",
                 "sim --model motion-mind-3 --mode 4 --protocol ascii --address 1,2 --pty /tmp/mm",
                 "protocol --family motion-mind WRITE_STORE PTERM",
+                "terminal --connect /dev/ttyUSB0,family=motion-mind 'R01 04' 'W01 04 5000'",
+                "terminal --connect sim:motion-mind-3 '1A 01 01 00 01 00'",
                 "monitor --connect /dev/ttyUSB0,family=motion-mind --pty /tmp/tap",
                 "monitor --family motion-mind --decode frames.txt",
             ],
+            typed: "A Motion Mind in ASCII takes lines, one in binary the bytes of a frame in hexadecimal without their checksum.",
         }
     }
 
@@ -101,6 +98,10 @@ impl Family for MotionMindCommands {
             ),
             Act::Read | Act::ReadKeys(_) | Act::Write { .. } => None,
         }
+    }
+
+    fn terminal(&self, identity: &Identity) -> Option<Box<dyn Terminal>> {
+        Some(Box::new(MotionMindFacts::of(identity)?))
     }
 
     fn set_up(&self, identity: &Identity) -> Option<String> {

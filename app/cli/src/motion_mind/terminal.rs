@@ -1,125 +1,45 @@
-//! `brushwork terminal`: commands of a Motion Mind as they are typed, with what comes back and what it means.
+//! Commands of a Motion Mind as they are typed in a terminal.
 //!
-//! A unit in text takes lines; one in binary takes frames in hexadecimal, whose checksum is added. Nothing that moves the motor
-//! goes out: that takes arming, which a terminal does not do.
+//! A unit in text takes lines; one in binary takes frames in hexadecimal, whose checksum is added.
 
-use crate::messages::CliLinkMessage;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use brushwork_link::device::{Event, PollRate, Request};
+use brushwork_link::device::Described;
 use brushwork_motion_mind_client::{MotionMindFacts, describe_received, describe_sent};
 use brushwork_motion_mind_wire::{
     Command, Effect, FrameEvent, FrameReader, LineEvent, LineReader, Protocol, checksum,
 };
 use brushwork_values::hex;
-use clap::Args;
-use serde_json::json;
 
-use crate::client::ask;
-use crate::interrupt::meanwhile;
-use crate::{Client, ConnectArgs, Exit, Interrupt, Output, say};
+use crate::family::Terminal;
 
-/// How long a reply may take.
-const REPLY_LIMIT: Duration = Duration::from_secs(10);
-
-/// Arguments of `brushwork terminal`.
-#[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  \
-    brushwork terminal --connect /dev/ttyUSB0,family=motion-mind 'R01 04' 'W01 04 5000'\n  \
-    brushwork terminal --connect sim:motion-mind-3 '1A 01 01 00 01 00'\n\n\
-    Without commands each line of standard input is one. A unit in ASCII takes lines, one in binary takes the bytes of a\n\
-    frame in hexadecimal without their checksum. Commands that move the motor are refused; use `brushwork drive`.")]
-pub struct TerminalArgs {
-    /// The controller.
-    #[command(flatten)]
-    pub connect: ConnectArgs,
-    /// What to send.
-    #[arg(value_name = "COMMAND")]
-    pub commands: Vec<String>,
-    /// Print each exchange as a JSON object a line.
-    #[arg(long)]
-    pub json: bool,
-}
-
-/// Sends each command that is given, or each line of standard input.
-pub fn run(args: &TerminalArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
-    let client = Client::connect(&args.connect, PollRate::Off, interrupt)?;
-    let Some(facts) = MotionMindFacts::of(&client.identity) else {
-        return Err(Exit::Refused.saying(CliLinkMessage::OtherFamily {
-            title: client.identity.title().to_owned(),
-            family: "Motion Mind",
-        }));
-    };
-    say(CliLinkMessage::TerminalOf {
-        title: client.identity.title().to_owned(),
-        unit: client.identity.place(),
-        port: client.identity.port.clone(),
-        mode: facts.mode.to_string(),
-        protocol: facts.protocol.to_string(),
-    });
-    let mut given = args.commands.iter().cloned();
-    let mut failed = false;
-    for id in 1.. {
-        let line = if args.commands.is_empty() { typed(&client, interrupt)? } else { given.next() };
-        let Some(line) = line else { break };
-        failed |= !exchange(&line, id, facts, args, &client, out, interrupt)?;
+impl Terminal for MotionMindFacts {
+    fn set_up(&self) -> String {
+        format!("{}, {}", self.mode, self.protocol)
     }
-    Ok(if failed { Exit::Refused } else { Exit::Done })
-}
 
-/// The next line of standard input; `None` at its end.
-fn typed(client: &Client, interrupt: &Interrupt) -> Result<Option<String>, Exit> {
-    let read = || std::io::stdin().lines().next()?.ok();
-    let breathe = || {
-        if let Some(Event::Failure(failure)) = client.next_event(interrupt)? {
-            say(failure.to_string());
-        }
-        Ok(())
-    };
-    Ok(meanwhile(read, &breathe)?.flatten())
-}
+    fn bytes_of(&self, line: &str) -> Result<Vec<u8>, String> {
+        bytes_of(line, self.protocol)
+    }
 
-/// Sends one command; whether it went out.
-fn exchange(
-    line: &str,
-    id: u64,
-    facts: MotionMindFacts,
-    args: &TerminalArgs,
-    client: &Client,
-    out: &mut Output,
-    interrupt: &Interrupt,
-) -> Result<bool, Exit> {
-    if line.trim().is_empty() {
-        return Ok(true);
+    fn stops_the_motor(&self, bytes: &[u8]) -> bool {
+        stops_the_motor(bytes, self.protocol)
     }
-    let bytes = match bytes_of(line, facts.protocol) {
-        Ok(bytes) => bytes,
-        Err(sentence) => {
-            say(sentence);
-            return Ok(false);
-        }
-    };
-    if stops_the_motor(&bytes, facts.protocol) {
-        say(CliLinkMessage::TerminalStops);
-    }
-    ask(client.device(), Request::Raw { id, bytes: bytes.clone() })?;
-    let deadline = Instant::now() + REPLY_LIMIT;
-    while Instant::now() < deadline {
-        match client.next_event(interrupt)? {
-            Some(Event::RawReply { id: answered, result }) if answered == id => {
-                return match result {
-                    Ok(reply) => tell(&bytes, &reply, facts.protocol, args, out).map(|()| true),
-                    Err(failure) => {
-                        say(failure.to_string());
-                        Ok(false)
-                    }
-                };
-            }
-            Some(Event::Failure(failure)) => say(failure.to_string()),
-            _ => {}
+
+    fn shown(&self, bytes: &[u8]) -> String {
+        match self.protocol {
+            Protocol::Binary => hex(bytes),
+            Protocol::Text => String::from_utf8_lossy(bytes).trim_end().replace("\r\n", " | "),
         }
     }
-    Err(Exit::NoLink.saying(CliLinkMessage::NoAnswer))
+
+    fn describe_sent(&self, bytes: &[u8]) -> Described {
+        describe_sent(bytes, self.protocol)
+    }
+
+    fn describe_received(&self, sent: &[u8], reply: &[u8]) -> Described {
+        describe_received(sent, reply, self.protocol)
+    }
 }
 
 /// Whether the bytes are a command that writes EEPROM or starts the unit anew.
@@ -141,40 +61,6 @@ fn commands_of(bytes: &[u8], protocol: Protocol) -> Vec<Command> {
         },
     };
     bytes.iter().filter_map(read).collect()
-}
-
-fn tell(
-    sent: &[u8],
-    reply: &[u8],
-    protocol: Protocol,
-    args: &TerminalArgs,
-    out: &mut Output,
-) -> Result<(), Exit> {
-    let asked = describe_sent(sent, protocol);
-    let (shown, meaning) = if reply.is_empty() {
-        (String::new(), "silence".to_owned())
-    } else {
-        (shown(reply, protocol), describe_received(sent, reply, protocol).text)
-    };
-    let printed = if args.json {
-        out.json_line(&json!({
-            "sent": hex(sent),
-            "asked": asked.text,
-            "received": hex(reply),
-            "meaning": meaning,
-        }))
-    } else {
-        out.line(format!("> {:<32}  {}", self::shown(sent, protocol), asked.text))
-            .and_then(|()| out.line(format!("< {shown:<32}  {meaning}")))
-    };
-    printed.map_err(Exit::from)
-}
-
-fn shown(bytes: &[u8], protocol: Protocol) -> String {
-    match protocol {
-        Protocol::Binary => hex(bytes),
-        Protocol::Text => String::from_utf8_lossy(bytes).trim_end().replace("\r\n", " | "),
-    }
 }
 
 /// The bytes of a typed command: a line gets its end, a frame its checksum.
