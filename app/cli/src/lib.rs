@@ -63,10 +63,8 @@ pub fn run(
     open_window: impl FnOnce(&WindowArgs) -> Result<(), String>,
     tools: impl IntoIterator<Item = Tool>,
 ) -> ExitCode {
-    let own = family::families().iter().flat_map(|family| family.commands());
-    let tools: Vec<Tool> = own.chain(tools).collect();
-    let known = tools.iter().fold(Cli::command(), |cli, tool| cli.subcommand(tool.command.clone()));
-    let matches = known.get_matches();
+    let tools: Vec<Tool> = commands_of_families().chain(tools).collect();
+    let matches = with_commands(&tools).get_matches();
     let tool = matches.subcommand().and_then(|(name, arguments)| {
         Some((tools.iter().find(|tool| tool.command.get_name() == name)?, arguments))
     });
@@ -81,6 +79,20 @@ pub fn run(
         };
     };
     with_interrupt(|out, interrupt| units::run(command, typed, out, interrupt))
+}
+
+/// The command line as it is packaged, for those who make manual pages and completions of it. Families are to be installed before.
+#[must_use]
+pub fn command_line() -> clap::Command {
+    with_commands(&commands_of_families().collect::<Vec<_>>())
+}
+
+fn commands_of_families() -> impl Iterator<Item = Tool> {
+    family::families().iter().flat_map(|family| family.commands())
+}
+
+fn with_commands(tools: &[Tool]) -> clap::Command {
+    tools.iter().fold(Cli::command(), |cli, tool| cli.subcommand(tool.command.clone()))
 }
 
 fn with_interrupt(run: impl FnOnce(&mut Output, &Interrupt) -> Result<Exit, Exit>) -> ExitCode {

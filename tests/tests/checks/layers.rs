@@ -8,7 +8,7 @@ use brushwork_tests::rust_source::{code_lines, without_tests};
 use brushwork_tests::workspace::{self, DependencyKind, Member, Metadata};
 
 /// The arrows that ship: a crate and the crates of this workspace it may use.
-const ARROWS: [(&str, &[&str]); 29] = [
+const ARROWS: [(&str, &[&str]); 30] = [
     (
         "brushwork",
         &[
@@ -83,6 +83,7 @@ const ARROWS: [(&str, &[&str]); 29] = [
             "brushwork-values",
         ],
     ),
+    ("brushwork-packaging", &["brushwork", "brushwork-cli"]),
     ("brushwork-tuning", &[]),
     (
         "brushwork-tuning-bench",
@@ -200,7 +201,7 @@ const ARROWS: [(&str, &[&str]); 29] = [
 ];
 
 /// Arrows for tests alone: the window is tried against simulated controllers, the program from outside.
-const TEST_ARROWS: [(&str, &[&str]); 3] = [
+const TEST_ARROWS: [(&str, &[&str]); 4] = [
     ("brushwork", &["brushwork-canopen", "brushwork-child"]),
     ("brushwork-core", &["brushwork-mcp-sim"]),
     (
@@ -214,6 +215,7 @@ const TEST_ARROWS: [(&str, &[&str]); 3] = [
             "brushwork-motion-mind-sim",
         ],
     ),
+    ("brushwork-packaging", &["brushwork-child"]),
 ];
 
 /// Crates from outside that only some of ours may use, by the start of their name.
@@ -224,7 +226,7 @@ const KEPT_TO: [(&str, &[&str]); 7] = [
     ("eframe", &["brushwork-gui"]),
     ("winit", &["brushwork-gui"]),
     ("rfd", &["brushwork-gui"]),
-    ("clap", &["brushwork", "brushwork-cli"]),
+    ("clap", &["brushwork", "brushwork-cli", "brushwork-packaging"]),
     ("serialport", &["brushwork-link"]),
 ];
 
