@@ -3,33 +3,12 @@
 //! Events are raised from outside, between two runs of the machine, so that nothing has to be looked at from instruction to instruction: a
 //! handler is called at the beginning of a run, where events are let in again, and where another handler has returned.
 
+use super::events::{Kept, after_ticks};
 use super::{Call, FaultKind, Host, Machine, State};
 use crate::op::Op;
 use crate::program::{Program, limits};
-use std::collections::BTreeMap;
-use std::time::Duration;
 
 type Done = Result<(), FaultKind>;
-
-/// Which events there are, as a machine knows them.
-#[derive(Clone, Debug, Default)]
-pub struct Events {
-    /// First instruction of the handler of each event that has one.
-    handlers: BTreeMap<u32, u32>,
-    /// Events that were raised and whose handler has not run yet, a bit each.
-    raised: u32,
-    are_let_in: bool,
-    in_handler: bool,
-}
-
-/// Bytes that a subroutine found in memory and puts back.
-#[derive(Clone, Debug)]
-pub struct Kept {
-    /// How deep the calls were.
-    depth: usize,
-    first: u32,
-    bytes: Vec<u8>,
-}
 
 impl Machine {
     /// An event has come: its handler is called as soon as the program is not in a wait, not in another handler, and lets events in; of
@@ -144,21 +123,4 @@ impl Machine {
         let bytes = u32::try_from(self.memory.bytes().len()).unwrap_or(u32::MAX);
         Err(FaultKind::OutsideMemory { address: address.max(bytes), bytes })
     }
-}
-
-const NANOSECONDS: u128 = 1_000_000_000;
-
-/// How often a clock of so many ticks a second has ticked, which is at 0 when the power comes.
-#[must_use]
-pub fn ticks(now: Duration, per_second: u32) -> u64 {
-    u64::try_from(now.as_nanos() * u128::from(per_second) / NANOSECONDS).unwrap_or(u64::MAX)
-}
-
-/// When a clock of so many ticks a second will have ticked so often again: what counts ticks ends with one.
-#[must_use]
-pub fn after_ticks(now: Duration, count: u32, per_second: u32) -> Duration {
-    let per_second = per_second.max(1);
-    let tick = u128::from(ticks(now, per_second)) + u128::from(count);
-    let nanoseconds = (tick * NANOSECONDS).div_ceil(u128::from(per_second));
-    now.max(Duration::from_nanos(u64::try_from(nanoseconds).unwrap_or(u64::MAX)))
 }

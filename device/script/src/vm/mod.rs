@@ -4,6 +4,7 @@
 mod board;
 mod counter;
 pub mod digits;
+mod events;
 mod execute;
 mod fault;
 mod host;
@@ -11,7 +12,7 @@ mod memory;
 mod reading;
 mod streams;
 
-pub use board::{after_ticks, ticks};
+pub use events::{after_ticks, ticks};
 pub use fault::{Fault, FaultKind};
 pub use host::Host;
 pub use memory::{Memory, element};
@@ -19,8 +20,8 @@ pub use memory::{Memory, element};
 use crate::arithmetic::{self, Type};
 use crate::op::Array;
 use crate::program::{Program, limits};
-use board::{Events, Kept};
 use counter::Loop;
+use events::{Events, Kept};
 use reading::Reading;
 use std::sync::Arc;
 use std::time::Duration;
