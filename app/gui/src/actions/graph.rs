@@ -43,6 +43,7 @@ pub(super) const ACTIONS: &[Action] = &[
     action!(5 "graph.keep-run", KeepRun, "Lays what is in view beneath later samples, to compare."),
     action!(5 "graph.forget-runs", ForgetRuns, "Takes the runs that were kept away."),
     action!(6 "graph.toggle-large", ToggleLarge, "Gives the graph the whole screen, or its share again."),
+    action!(6 "graph.toggle-list", ToggleList, "Folds the list of channels away, with a legend in the plot instead, or shows it again."),
     action!(7 "graph.record-csv", RecordCsv, "Records every sample from now on into a CSV file, with host times."),
     action!(7 "graph.record-compact", RecordCompact, "Records every sample from now on into a compact file."),
     action!(7 "graph.stop-recording", StopRecording, "Ends the recording and closes its file."),

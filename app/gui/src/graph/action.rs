@@ -36,6 +36,8 @@ pub enum GraphAction {
     ForgetRuns,
     /// The graph takes the whole screen, or its share of it.
     ToggleLarge,
+    /// Folds the list of channels away, or unfolds it; a legend in the plot stands for it.
+    ToggleList,
     /// Begins to record into a CSV file.
     RecordCsv,
     /// Begins to record into a compact file.
@@ -80,6 +82,7 @@ impl GraphAction {
             Self::KeepRun => "Keep what is in view as a run",
             Self::ForgetRuns => "Remove all runs",
             Self::ToggleLarge => "Large graph",
+            Self::ToggleList => "List of channels",
             Self::RecordCsv => "Record to CSV",
             Self::RecordCompact => "Record to a compact file",
             Self::StopRecording => "Stop recording",
@@ -117,6 +120,16 @@ impl LiveGraph {
             GraphAction::KeepRun => self.keep_run(),
             GraphAction::ForgetRuns => self.runs.clear(),
             GraphAction::ToggleLarge => self.large = !self.large,
+            GraphAction::ToggleList => {
+                self.legend = match self.legend {
+                    Some(_) => None,
+                    None => {
+                        let mut listed = self.sheet().shown();
+                        listed.sort_unstable();
+                        Some(listed)
+                    }
+                };
+            }
             GraphAction::RecordCsv => self.record(brushwork_core::recording::Form::Csv),
             GraphAction::RecordCompact => self.record(brushwork_core::recording::Form::Compact),
             GraphAction::StopRecording => self.end_recording(Stopping::Asked),
@@ -177,7 +190,7 @@ impl LiveGraph {
 mod tests {
     use super::*;
 
-    const ALL: [GraphAction; 36] = [
+    const ALL: [GraphAction; 37] = [
         GraphAction::TogglePause,
         GraphAction::BackToLive,
         GraphAction::Earlier,
@@ -208,6 +221,7 @@ mod tests {
         GraphAction::KeepRun,
         GraphAction::ForgetRuns,
         GraphAction::ToggleLarge,
+        GraphAction::ToggleList,
         GraphAction::RecordCsv,
         GraphAction::RecordCompact,
         GraphAction::StopRecording,

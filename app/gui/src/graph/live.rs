@@ -25,6 +25,8 @@ pub struct LiveGraph {
     pub rate: Rate,
     /// The graph takes the whole screen.
     pub large: bool,
+    /// The channels of the legend that stands in the plot while the list beside it is folded away.
+    pub legend: Option<Vec<usize>>,
     /// Input pins of the unit, for the list.
     pub pins: usize,
     /// Folders, names, dialogs, and what is being read and written.
@@ -67,6 +69,7 @@ impl LiveGraph {
             align: Align::default(),
             rate: Rate::new(interval_s),
             large: false,
+            legend: None,
             pins: 0,
             files: GraphFiles::default(),
             last_plot_size: egui::vec2(800.0, 400.0),
@@ -78,6 +81,7 @@ impl LiveGraph {
     /// Turns to the channels of another family's controller.
     pub fn set_channels(&mut self, channels: Vec<ChannelInfo>) {
         self.end_recording(Stopping::OtherChannels);
+        self.legend = None;
         self.silent = vec![Silence::default(); channels.len()];
         self.live.set_channels(channels);
     }

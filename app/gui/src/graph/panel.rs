@@ -17,6 +17,9 @@ pub fn graph_ui(ui: &mut Ui, graph: &mut LiveGraph, poll: PollRate, commands: &m
         ui.horizontal_wrapped(|ui| toolbar::toolbar_ui(ui, graph, poll, commands));
         ui.spacing_mut().item_spacing.y = 2.0;
         let below = ui.available_rect_before_wrap();
+        if graph.legend.is_some() {
+            return part_ui(ui, below, |ui| picture_ui(ui, graph, poll));
+        }
         let (left, right) = below.split_left_right_at_x(below.right() - LIST_WIDTH);
         let left = left.with_max_x(left.right() - 8.0);
         part_ui(ui, left, |ui| picture_ui(ui, graph, poll));

@@ -253,6 +253,8 @@ fn more_ui(ui: &mut Ui, graph: &mut LiveGraph) {
         }
         let large = if graph.large { "Small graph" } else { "Large graph" };
         button_ui(ui, graph, large, "The graph takes the whole screen, or its share of it", A::ToggleLarge);
+        let list = if graph.legend.is_some() { "Show list" } else { "Fold list" };
+        button_ui(ui, graph, list, "The list of channels, or a small legend in the plot", A::ToggleList);
     });
     ui.separator();
     heading_ui(ui, "Record and export");

@@ -102,6 +102,7 @@ impl LiveGraph {
         sheet.selected = shown.first().copied().unwrap_or(0);
         sheet.look_at_all();
         sheet.fit_shown();
+        self.legend = None;
         self.opened = Some(Opened { name, sheet, began, note, left_out });
     }
 
@@ -124,6 +125,7 @@ impl LiveGraph {
 
     /// The recording that is looked at goes; the live graph was sampled all the time.
     pub fn close_recording(&mut self) {
+        self.legend = None;
         self.opened = None;
     }
 

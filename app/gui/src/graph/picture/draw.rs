@@ -1,4 +1,7 @@
-//! What the graph looks like: grid, runs, lines, overflow arrows, zero marks, flags, cursors and trigger.
+//! What the graph looks like. Lines, grid and figures are told as numbers, which a plot of the toolkit draws in the window
+//! and [`Scene::picture`] in a file; what lies over them ([`Scene::over`]) is drawn alike in both.
+
+use std::rc::Rc;
 
 use egui::{Align2, Color32, Pos2, Rect, Vec2, pos2, vec2};
 
@@ -6,7 +9,7 @@ use super::axes::{self, Zero};
 use super::frame::{FLAGS, Frame, GUTTER};
 use super::{Element, Layer, Picture, line_of};
 use crate::graph::runs::{Align, Run};
-use crate::graph::scale::DIVISIONS;
+use crate::graph::scale::{DIVISIONS, Scale};
 use crate::graph::trace::{Columns, Trace, View};
 use crate::graph::{Cursors, Mark, MarkKind, Sheet, TriggerMode, TriggerSource};
 use crate::theme::Palette;
@@ -53,85 +56,86 @@ pub fn zero_s(sheet: &Sheet, is_recording: bool) -> f64 {
     }
 }
 
+/// The line of a channel, of now or of an earlier run.
+#[derive(Clone, Debug)]
+pub struct Curve {
+    pub channel: usize,
+    /// Place of the run it belongs to.
+    pub run: Option<usize>,
+    pub color: Color32,
+    pub scale: Scale,
+    /// Unbroken stretches of points, each a time and a value.
+    pub lines: Vec<Vec<[f64; 2]>>,
+    is_selected: bool,
+}
+
+impl Curve {
+    /// Its shapes in a plot that lies in `frame`.
+    pub fn elements(&self, frame: &Frame) -> Vec<Element> {
+        let mut elements = Vec::new();
+        for points in &self.lines {
+            let points = frame.place(points, |value| self.scale.part(value));
+            match points.as_slice() {
+                _ if self.run.is_some() => dashed(&mut elements, &points, self.color),
+                [only] => elements.push(Element::Box {
+                    rect: Rect::from_center_size(*only, Vec2::splat(3.0)),
+                    color: self.color,
+                }),
+                _ => elements.extend(line_of(points, self.color, if self.is_selected { 2.0 } else { 1.2 })),
+            }
+        }
+        elements
+    }
+}
+
 impl Scene<'_> {
-    /// Everything.
+    /// Everything, for a file.
     pub fn picture(&self) -> Picture {
         let Frame { outer, plot, .. } = self.frame;
+        let curves = self.curves();
         let mut around = Vec::new();
         let mut inside = vec![Element::Box { rect: plot, color: self.palette.ground }];
         self.time_axis(&mut inside, &mut around);
         self.value_axis(&mut inside, &mut around);
+        inside.extend(curves.iter().flat_map(|curve| curve.elements(&self.frame)));
+        // Lines at the very top and bottom are drawn whole.
+        let mut picture =
+            vec![Layer { clip: plot.expand(1.0), elements: inside }, Layer { clip: outer, elements: around }];
+        picture.extend(self.over(&curves));
+        picture
+    }
+
+    /// What lies over the lines: marks, arrows where a line leaves the picture, trigger, cursors, zeros.
+    pub fn over(&self, curves: &[Rc<Curve>]) -> Picture {
+        let Frame { outer, plot, .. } = self.frame;
+        let (mut inside, mut around) = (Vec::new(), Vec::new());
+        self.axis_name(&mut around);
         self.marks(&mut inside, &mut around);
-        self.runs(&mut inside);
-        let arrows = self.lines(&mut inside);
+        let mut arrows = Vec::new();
+        for curve in curves {
+            if let Some(run) = curve.run {
+                self.run_number(run, curve, &mut inside);
+                continue;
+            }
+            if curve.is_selected {
+                self.lost(&mut inside, &curve.lines);
+            }
+            for points in &curve.lines {
+                let points = self.frame.place(points, |value| curve.scale.part(value));
+                self.overflow(&points, curve.color, &mut arrows);
+            }
+        }
         inside.extend(arrows);
         self.trigger(&mut inside, &mut around);
         self.cursors(&mut inside);
         self.zero_marks(&mut around);
-        // Lines at the very top and bottom are drawn whole.
         vec![Layer { clip: plot.expand(1.0), elements: inside }, Layer { clip: outer, elements: around }]
     }
 
-    fn time_axis(&self, inside: &mut Vec<Element>, around: &mut Vec<Element>) {
-        let Frame { plot, start_s, end_s, .. } = self.frame;
-        let zero = zero_of(self.sheet, self.is_recording);
-        let zero_s = zero_s(self.sheet, self.is_recording);
-        let division_s = axes::division_s(end_s - start_s, plot.width());
-        let every = axes::label_every(division_s, end_s - start_s, plot.width());
-        let first = ((start_s - zero_s) / division_s - 1e-6).ceil() as i64;
-        let last = ((end_s - zero_s) / division_s + 1e-6).floor() as i64;
-        for index in first..=last {
-            let x = self.frame.x(zero_s + index as f64 * division_s);
-            inside.push(self.grid_line(pos2(x, plot.top()), pos2(x, plot.bottom())));
-            if index.rem_euclid(every) == 0 {
-                let text = axes::label(index as f64 * division_s, division_s, zero);
-                let half = text.chars().count() as f32 * 3.1;
-                let x = x.clamp(plot.left() - GUTTER, self.frame.outer.right() - half);
-                around.push(self.words(
-                    pos2(x, plot.bottom() + 3.0),
-                    Align2::CENTER_TOP,
-                    text,
-                    self.palette.weak_text,
-                ));
-            }
-        }
-    }
-
-    fn value_axis(&self, inside: &mut Vec<Element>, around: &mut Vec<Element>) {
-        let plot = self.frame.plot;
-        let every = (DIVISIONS as f32 * LABEL_HEIGHT / plot.height()).ceil().max(1.0) as usize;
-        let selected = self.sheet.channels.get(self.sheet.selected);
-        for division in 0..=DIVISIONS {
-            let part = division as f64 / DIVISIONS as f64;
-            let y = self.frame.y(part);
-            inside.push(self.grid_line(pos2(plot.left(), y), pos2(plot.right(), y)));
-            let Some(channel) = selected.filter(|_| division.is_multiple_of(every)) else { continue };
-            let decimals = channel.scale.decimals();
-            let text = format!("{:.decimals$}", channel.scale.value(part) + 0.0);
-            let at = pos2(plot.left() - GUTTER - 3.0, y);
-            around.push(self.words(at, Align2::RIGHT_CENTER, text, self.palette.text));
-        }
-        if let Some(channel) = selected {
-            let color = color_of(self.sheet, self.palette, self.sheet.selected);
-            let zero = self.frame.y(channel.scale.part(0.0));
-            inside.push(line(
-                pos2(plot.left(), zero),
-                pos2(plot.right(), zero),
-                color.gamma_multiply(0.45),
-                1.0,
-            ));
-            let text = match channel.info.unit.as_str() {
-                "" => channel.info.label.clone(),
-                unit => format!("{} {unit}", short(&channel.info.label)),
-            };
-            let at = pos2(self.frame.outer.left(), self.frame.outer.top() + FLAGS * 0.5 - 4.0);
-            around.push(self.words(at, Align2::LEFT_CENTER, text, color));
-        }
-    }
-
-    /// Each run as thin, faint lines in the colours of its channels, with its number.
-    fn runs(&self, inside: &mut Vec<Element>) {
+    /// The lines of all shown channels, those of earlier runs first and fainter, the selected one last.
+    pub fn curves(&self) -> Vec<Rc<Curve>> {
         let Frame { start_s, end_s, .. } = self.frame;
+        let mut curves = Vec::new();
         for (number, run) in self.runs.iter().enumerate().filter(|(_, run)| run.shown) {
             let offset_s = run.offset_s(self.sheet, self.align);
             let view = View { start_s: start_s - offset_s, end_s: end_s - offset_s, columns: self.columns() };
@@ -145,49 +149,122 @@ impl Scene<'_> {
                 trace.lines.iter_mut().flatten().for_each(|point| point[0] += offset_s);
                 let color =
                     color_of(self.sheet, self.palette, channel).lerp_to_gamma(self.palette.ground, 0.45);
-                for points in &trace.lines {
-                    let points = self.frame.place(points, |value| shown.scale.part(value));
-                    if let Some(at) = points.iter().find(|at| at.x >= self.frame.plot.left()) {
-                        let at = *at + vec2(4.0, -4.0);
-                        let text = format!("run {}", number + 1);
-                        inside.push(Element::Text {
-                            at,
-                            anchor: Align2::LEFT_BOTTOM,
-                            text,
-                            size: 9.5,
-                            color,
-                            figures: false,
-                        });
-                    }
-                    dashed(inside, &points, color);
-                }
+                let (lines, scale) = (trace.lines, shown.scale);
+                curves.push(Rc::new(Curve {
+                    channel,
+                    run: Some(number),
+                    color,
+                    scale,
+                    lines,
+                    is_selected: false,
+                }));
+            }
+        }
+        let columns = Columns::new(&self.sheet.track.history, &self.sheet.view(self.columns()));
+        curves.extend(self.sheet.shown().into_iter().map(|channel| {
+            Rc::new(Curve {
+                channel,
+                run: None,
+                color: color_of(self.sheet, self.palette, channel),
+                scale: self.sheet.channels[channel].scale,
+                lines: self.sheet.lines(channel, &columns),
+                is_selected: channel == self.sheet.selected,
+            })
+        }));
+        curves
+    }
+
+    /// The lines of the grid in time, each with its figure where there is room for one.
+    pub fn times(&self) -> Vec<(f64, Option<String>)> {
+        let Frame { plot, start_s, end_s, .. } = self.frame;
+        let zero = zero_of(self.sheet, self.is_recording);
+        let zero_s = zero_s(self.sheet, self.is_recording);
+        let division_s = axes::division_s(end_s - start_s, plot.width());
+        let every = axes::label_every(division_s, end_s - start_s, plot.width());
+        let first = ((start_s - zero_s) / division_s - 1e-6).ceil() as i64;
+        let last = ((end_s - zero_s) / division_s + 1e-6).floor() as i64;
+        let figure = |index: i64| {
+            (index.rem_euclid(every) == 0).then(|| axes::label(index as f64 * division_s, division_s, zero))
+        };
+        (first..=last).map(|index| (zero_s + index as f64 * division_s, figure(index))).collect()
+    }
+
+    /// The lines of the grid in height, as parts of it, with the selected channel's figures where there is room.
+    pub fn heights(&self) -> Vec<(f64, Option<String>)> {
+        let every = (DIVISIONS as f32 * LABEL_HEIGHT / self.frame.plot.height()).ceil().max(1.0) as usize;
+        let selected = self.sheet.channels.get(self.sheet.selected);
+        let figure = |division: usize, part: f64| {
+            let scale = selected.filter(|_| division.is_multiple_of(every))?.scale;
+            Some(format!("{:.1$}", scale.value(part) + 0.0, scale.decimals()))
+        };
+        let part_of = |division: usize| division as f64 / DIVISIONS as f64;
+        (0..=DIVISIONS).map(|division| (part_of(division), figure(division, part_of(division)))).collect()
+    }
+
+    /// Where the selected channel is zero, as a part of the height, and the colour of the line there.
+    pub fn zero_line(&self) -> Option<(f64, Color32)> {
+        let channel = self.sheet.channels.get(self.sheet.selected)?;
+        let color = color_of(self.sheet, self.palette, self.sheet.selected);
+        Some((channel.scale.part(0.0), color.gamma_multiply(0.45)))
+    }
+
+    fn time_axis(&self, inside: &mut Vec<Element>, around: &mut Vec<Element>) {
+        let plot = self.frame.plot;
+        for (time_s, figure) in self.times() {
+            let x = self.frame.x(time_s);
+            inside.push(self.grid_line(pos2(x, plot.top()), pos2(x, plot.bottom())));
+            if let Some(text) = figure {
+                let half = text.chars().count() as f32 * 3.1;
+                let x = x.clamp(plot.left() - GUTTER, self.frame.outer.right() - half);
+                let at = pos2(x, plot.bottom() + 3.0);
+                around.push(self.words(at, Align2::CENTER_TOP, text, self.palette.weak_text));
             }
         }
     }
 
-    /// The lines of all shown channels; the arrows where they leave the picture are given back, to lie on top.
-    fn lines(&self, inside: &mut Vec<Element>) -> Vec<Element> {
-        let columns = Columns::new(&self.sheet.track.history, &self.sheet.view(self.columns()));
-        let mut arrows = Vec::new();
-        for channel in self.sheet.shown() {
-            let color = color_of(self.sheet, self.palette, channel);
-            let selected = channel == self.sheet.selected;
-            let scale = self.sheet.channels[channel].scale;
-            let lines = self.sheet.lines(channel, &columns);
-            if selected {
-                self.lost(inside, &lines);
-            }
-            for points in lines {
-                let points = self.frame.place(&points, |value| scale.part(value));
-                self.overflow(&points, color, &mut arrows);
-                match points.as_slice() {
-                    [only] => inside
-                        .push(Element::Box { rect: Rect::from_center_size(*only, Vec2::splat(3.0)), color }),
-                    _ => inside.extend(line_of(points, color, if selected { 2.0 } else { 1.2 })),
-                }
+    fn value_axis(&self, inside: &mut Vec<Element>, around: &mut Vec<Element>) {
+        let plot = self.frame.plot;
+        for (part, figure) in self.heights() {
+            let y = self.frame.y(part);
+            inside.push(self.grid_line(pos2(plot.left(), y), pos2(plot.right(), y)));
+            if let Some(text) = figure {
+                let at = pos2(plot.left() - GUTTER - 3.0, y);
+                around.push(self.words(at, Align2::RIGHT_CENTER, text, self.palette.text));
             }
         }
-        arrows
+        if let Some((part, color)) = self.zero_line() {
+            let y = self.frame.y(part);
+            inside.push(line(pos2(plot.left(), y), pos2(plot.right(), y), color, 1.0));
+        }
+    }
+
+    /// What the figures at the side are of.
+    fn axis_name(&self, around: &mut Vec<Element>) {
+        let Some(channel) = self.sheet.channels.get(self.sheet.selected) else { return };
+        let text = match channel.info.unit.as_str() {
+            "" => channel.info.label.clone(),
+            unit => format!("{} {unit}", short(&channel.info.label)),
+        };
+        let at = pos2(self.frame.outer.left(), self.frame.outer.top() + FLAGS * 0.5 - 4.0);
+        let color = color_of(self.sheet, self.palette, self.sheet.selected);
+        around.push(self.words(at, Align2::LEFT_CENTER, text, color));
+    }
+
+    /// The number of a run, beside the first of its points in view.
+    fn run_number(&self, run: usize, curve: &Curve, inside: &mut Vec<Element>) {
+        for points in &curve.lines {
+            let points = self.frame.place(points, |value| curve.scale.part(value));
+            if let Some(at) = points.iter().find(|at| at.x >= self.frame.plot.left()) {
+                inside.push(Element::Text {
+                    at: *at + vec2(4.0, -4.0),
+                    anchor: Align2::LEFT_BOTTOM,
+                    text: format!("run {}", run + 1),
+                    size: 9.5,
+                    color: curve.color,
+                    figures: false,
+                });
+            }
+        }
     }
 
     /// A bar at the bottom where the selected channel has lost data.
@@ -441,7 +518,6 @@ fn short(label: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::graph::scale::Scale;
     use crate::graph::track::{ChannelInfo, Track};
 
     /// Ten seconds of one channel within the scale of -1 to 1, drawn into 600 by 300 points.
@@ -477,7 +553,7 @@ mod tests {
     /// The tips of the triangles at the upper and at the lower edge of the plot.
     fn arrows(frame: &Frame, picture: &Picture) -> [Vec<Pos2>; 2] {
         let mut found = [Vec::new(), Vec::new()];
-        for element in &picture[0].elements {
+        for element in &picture[2].elements {
             let Element::Polygon { points, .. } = element else { continue };
             let up = points[1].y > points[0].y;
             let edge = if up { frame.plot.top() + 1.0 } else { frame.plot.bottom() - 1.0 };

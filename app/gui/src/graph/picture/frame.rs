@@ -1,6 +1,7 @@
 //! Where things lie: the place of the plot, and which time and height is which pixel.
 
 use egui::{Pos2, Rect, pos2};
+use egui_plot::PlotTransform;
 
 /// Width kept for the figures of the vertical axis, so that the grid never moves.
 pub const AXIS_WIDTH: f32 = 68.0;
@@ -32,6 +33,12 @@ impl Frame {
         let top = outer.top() + FLAGS;
         let plot = Rect::from_min_max(pos2(left, top), pos2(right, bottom.max(top + 8.0)));
         Self { outer, plot, start_s, end_s }
+    }
+
+    /// Of a plot that the toolkit has laid out.
+    pub fn of(outer: Rect, transform: &PlotTransform) -> Self {
+        let ([start_s, _], [end_s, _]) = (transform.bounds().min(), transform.bounds().max());
+        Self { outer, plot: *transform.frame(), start_s, end_s }
     }
 
     pub fn x(&self, time_s: f64) -> f32 {

@@ -1,9 +1,9 @@
-//! A picture of the graph as plain shapes, so that the window, a PNG and an SVG show the very same.
+//! A picture of the graph as plain shapes, so that the window, a PNG and an SVG show the same.
 //!
-//! What is drawn is decided in [`draw`]; [`paint`] hands it to egui, [`svg`] writes it as text, [`png`] draws it on the
-//! CPU.
+//! What is drawn is decided in [`draw`]; in the window a plot of the toolkit draws the grid and the lines and [`paint`] what
+//! lies over them; [`svg`] writes all of it as text, [`png`] draws it on the CPU.
 
-use egui::{Align2, Color32, FontFamily, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, vec2};
+use egui::{Align2, Color32, Context, FontFamily, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, vec2};
 
 pub mod axes;
 pub mod draw;
@@ -80,24 +80,21 @@ pub fn paint(painter: &Painter, picture: Picture) {
 }
 
 fn paint_element(painter: &Painter, element: Element) {
+    painter.add(shape(painter.ctx(), element));
+}
+
+/// An element as the toolkit draws it.
+pub fn shape(ctx: &Context, element: Element) -> Shape {
     match element {
-        Element::Box { rect, color } => {
-            painter.rect_filled(rect, 0.0, color);
-        }
-        Element::Line { points, color, width } => {
-            painter.add(Shape::line(points, Stroke::new(width, color)));
-        }
-        Element::Bars { bars, color, width } => {
-            painter.add(Shape::mesh(bars_mesh(&bars, color, width)));
-        }
+        Element::Box { rect, color } => Shape::rect_filled(rect, 0.0, color),
+        Element::Line { points, color, width } => Shape::line(points, Stroke::new(width, color)),
+        Element::Bars { bars, color, width } => Shape::mesh(bars_mesh(&bars, color, width)),
         Element::Dashes { points, color, width } => {
-            painter.extend(Shape::dashed_line(&points, Stroke::new(width, color), DASH, DASH_GAP));
+            Shape::Vec(Shape::dashed_line(&points, Stroke::new(width, color), DASH, DASH_GAP))
         }
-        Element::Polygon { points, color } => {
-            painter.add(Shape::convex_polygon(points, color, Stroke::NONE));
-        }
+        Element::Polygon { points, color } => Shape::convex_polygon(points, color, Stroke::NONE),
         Element::Text { at, anchor, text, size, color, figures } => {
-            painter.text(at, anchor, text, font(size, figures), color);
+            ctx.fonts_mut(|fonts| Shape::text(fonts, at, anchor, text, font(size, figures), color))
         }
     }
 }
