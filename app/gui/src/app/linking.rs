@@ -59,6 +59,8 @@ impl App {
         front.set_family(family::of_target(&text).unwrap_or(front.family()));
         if front.phase == Phase::Closed {
             self.model.messages.dismiss();
+            front.lost = None;
+            front.shows_start = false;
             front.phase = Phase::Opening { target: text };
             let opening = self.parts.opener.open(target, self.model.devices.addresses());
             self.links.entry(front.id()).opening = Some(opening);

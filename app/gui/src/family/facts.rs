@@ -185,6 +185,11 @@ pub trait Family: Sync {
         Vec::new()
     }
 
+    /// What that drives, in a few words under a picture of it.
+    fn simulated_axis(&self) -> &'static str {
+        ""
+    }
+
     /// What a person would type to connect to what is simulated.
     fn simulated_target(&self, simulated: &Simulated) -> String {
         format!("sim:{}", simulated.model)

@@ -11,7 +11,9 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use brushwork_core::messages::EndedMessage;
-use brushwork_link::{ArmScope, ConnectTarget, Event, Identity, PollRate, SettingValue, SettingsImage};
+use brushwork_link::{
+    ArmScope, ConnectTarget, Event, Identity, Message, PollRate, SettingValue, SettingsImage,
+};
 use brushwork_plant::world::{ScriptRun, WorldView};
 use brushwork_values::Motor;
 
@@ -92,6 +94,10 @@ pub struct Connection {
     pub world: WorldPanel,
     /// What is heard of the nodes of a CAN bus; kept when the link has ended.
     pub bus: Option<Monitor>,
+    /// Why the last link is gone, if not by request.
+    pub lost: Option<Lost>,
+    /// The start page is asked for, though there is something left of the last link.
+    pub shows_start: bool,
     /// The worlds of the simulated units, while they run.
     pub worlds: Option<Arc<Vec<WorldView>>>,
     /// Which of them is looked at.
@@ -138,6 +144,15 @@ impl Phase {
     }
 }
 
+/// A link that was lost.
+#[derive(Clone, Debug)]
+pub struct Lost {
+    /// What was lost, why, and what the controller does without it.
+    pub text: Message,
+    /// When that was first shown, by the window's clock.
+    pub noticed_s: Option<f64>,
+}
+
 impl Default for Connection {
     fn default() -> Self {
         Self::new(ConnectionId::default())
@@ -176,6 +191,8 @@ impl Connection {
             graph_choices: BTreeMap::new(),
             world: WorldPanel::default(),
             bus: None,
+            lost: None,
+            shows_start: false,
             worlds: None,
             world_unit: 0,
         }
@@ -502,7 +519,7 @@ impl Connection {
         let effects = self.tune.link_ended();
         self.phase = Phase::Closed;
         self.jobs = Jobs::default();
-        self.link = LinkView::default();
+        self.lost = std::mem::take(&mut self.link).lost_because.map(|text| Lost { text, noticed_s: None });
         self.watch = Watch::default();
         self.traffic.link_ended();
         self.debug.forget();

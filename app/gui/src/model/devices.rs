@@ -234,6 +234,18 @@ impl Devices {
     }
 }
 
+/// What a port is, as far as its USB names tell.
+pub fn described(port: &PortInfo) -> String {
+    match (&port.product, port.is_usb) {
+        (Some(product), _) if port.is_loader() => {
+            format!("{product}: waits for firmware, see Device > Firmware")
+        }
+        (Some(product), _) => product.clone(),
+        (None, true) => "USB".to_owned(),
+        (None, false) => "serial port".to_owned(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -86,6 +86,8 @@ pub struct LinkView {
     motion: MotionCheck,
     /// Set when the link was lost while armed: after how much silence the controller stops by itself.
     lost_while_armed: Option<Option<Duration>>,
+    /// What was said when the link was lost.
+    pub(super) lost_because: Option<Message>,
     /// Why arming was refused the last time.
     pub refusals: Vec<Failure>,
     /// What else can drive a motor while something is armed: input pins and scripts, each as a sentence.
@@ -320,6 +322,7 @@ impl LinkView {
             text = LinkStatusMessage::LostWaiting { what: text, waiting: waiting.clone() }.into();
         }
         self.arming = Arming::Disarmed;
+        self.lost_because = Some(text.clone());
         vec![Effect::AtRest, Effect::say(Gravity::Error, text), Effect::Ended]
     }
 }

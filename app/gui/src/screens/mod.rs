@@ -14,16 +14,21 @@ pub mod face;
 pub(super) mod general;
 mod generator;
 mod loops;
+pub mod offline;
 mod position;
 mod progress;
 mod pwm;
 mod qpps;
+mod start;
 pub(super) mod status;
 pub mod stream;
 mod velocity;
 
 /// The screen that is open, as the family of the controller in front draws it.
 pub fn screen_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+    if !model.is_connected() && model.screen != Screen::MclEditor {
+        return offline::offline_ui(ui, model, commands);
+    }
     let drives = model.screen.arm_scope().filter(|_| model.front.graph.large && model.is_connected());
     if let Some(scope) = drives.filter(|scope| scope.allows_motion()) {
         return drive::large_graph_ui(ui, scope, model, commands);
@@ -61,9 +66,7 @@ pub(super) fn nothing_ui(ui: &mut Ui, hint: &str) {
 /// Why there is nothing to show before a controller has answered.
 pub(super) fn not_connected_text(phase: &Phase) -> String {
     match phase {
-        Phase::Closed => {
-            "Not connected.\nChoose a device at the left and press Connect. The simulated MCP266 needs no hardware.".to_owned()
-        }
+        Phase::Closed => "Not connected.".to_owned(),
         Phase::Opening { target } => format!("Connecting to {target} …"),
         Phase::Open { target } => format!("Looking for controllers at {target} …"),
         Phase::Closing { target } => format!("Disconnecting from {target} …"),

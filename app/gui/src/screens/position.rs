@@ -6,7 +6,6 @@ use brushwork_values::Motor;
 use egui::{Label, Ui};
 
 use super::drive::{Output, drive_ui, motor_ui, on_release_ui, options_ui, pace_ui};
-use super::{not_connected_text, nothing_ui};
 use crate::command::Commands;
 use crate::model::position::PACE_RANGE;
 use crate::model::{Connection, Direction, Model, UnitSettings};
@@ -23,9 +22,6 @@ const OUTPUT: Output = Output {
 };
 
 pub fn position_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-    if model.front.link.identity().is_none() {
-        return nothing_ui(ui, &not_connected_text(&model.front.phase));
-    }
     let note = "Closed loop: the controller goes to a count of the encoder and holds it.";
     drive_ui(ui, model, ("Position Settings", note, ArmScope::Position), commands, controls_ui);
 }

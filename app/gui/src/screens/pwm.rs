@@ -5,7 +5,6 @@ use brushwork_values::Motor;
 use egui::Ui;
 
 use super::drive::{Output, drive_ui, motor_ui, on_release_ui, options_ui, pace_ui, sync_ui};
-use super::{not_connected_text, nothing_ui};
 use crate::command::Commands;
 use crate::model::Model;
 use crate::model::pwm::ACCEL_RANGE_PERCENT_PER_S;
@@ -22,9 +21,6 @@ const OUTPUT: Output = Output {
 };
 
 pub fn pwm_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-    if model.front.link.identity().is_none() {
-        return nothing_ui(ui, &not_connected_text(&model.front.phase));
-    }
     let note = "Open loop: the duty is what the motor gets, whatever it does with it.";
     drive_ui(ui, model, ("PWM Settings", note, ArmScope::Pwm), commands, controls_ui);
 }

@@ -6,7 +6,6 @@ use brushwork_values::Motor;
 use egui::{Label, Ui};
 
 use super::drive::{Output, drive_ui, motor_ui, on_release_ui, options_ui, pace_ui, sync_ui};
-use super::{not_connected_text, nothing_ui};
 use crate::command::Commands;
 use crate::model::Model;
 use crate::model::velocity::ACCEL_RANGE_COUNTS_PER_S2;
@@ -23,9 +22,6 @@ const OUTPUT: Output = Output {
 };
 
 pub fn velocity_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-    if model.front.link.identity().is_none() {
-        return nothing_ui(ui, &not_connected_text(&model.front.phase));
-    }
     let note = "Closed loop: the controller holds a speed in counts/s by the encoder.";
     drive_ui(ui, model, ("Velocity Settings", note, ArmScope::Velocity), commands, controls_ui);
 }

@@ -1,6 +1,6 @@
 //! The device list: the simulated controller, the serial ports as they come and go, and a field for any other path.
 
-use brushwork_link::{Addresses, FamilyChoice, Identity, PortInfo};
+use brushwork_link::{Addresses, FamilyChoice, Identity};
 use egui::{
     Align2, ComboBox, Key, Label, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, TextStyle, Ui,
     WidgetInfo, pos2, vec2,
@@ -10,7 +10,7 @@ use egui::containers::menu::MenuButton;
 
 use crate::command::{Command, Commands};
 use crate::family::{self, Family};
-use crate::model::devices::{BAUD_RATES, Choice, Devices};
+use crate::model::devices::{BAUD_RATES, Choice, Devices, described};
 use crate::model::{
     Arming, Connection, ConnectionId, IndicatorState, LinkView, Model, Phase, Simulated, place_of,
 };
@@ -223,18 +223,6 @@ fn paint_row(ui: &Ui, rect: Rect, row: &Row, (chosen, in_front): (bool, bool), r
         palette.weak_text,
     );
     below.text(pos2(left, rect.bottom() - 5.0), Align2::LEFT_BOTTOM, row.state.0, small, palette.text);
-}
-
-/// What a port is, as far as its USB names tell.
-fn described(port: &PortInfo) -> String {
-    match (&port.product, port.is_usb) {
-        (Some(product), _) if port.is_loader() => {
-            format!("{product}: waits for firmware, see Device > Firmware")
-        }
-        (Some(product), _) => product.clone(),
-        (None, true) => "USB".to_owned(),
-        (None, false) => "serial port".to_owned(),
-    }
 }
 
 fn hint_ui(ui: &mut Ui, devices: &Devices) {

@@ -24,7 +24,7 @@ pub mod result;
 pub mod run;
 mod runs;
 pub mod setup;
-mod sketches;
+pub mod sketches;
 pub mod which;
 mod winding;
 

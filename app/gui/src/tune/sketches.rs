@@ -60,6 +60,11 @@ pub struct Sketch {
 }
 
 impl Sketch {
+    /// A chain that is as it should be.
+    pub fn sound(caption: &'static str) -> Self {
+        Self { caption, ..Self::default() }
+    }
+
     /// The drawing for a cause; none where there is nothing to look at.
     #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn of(cause: Cause) -> Option<Self> {

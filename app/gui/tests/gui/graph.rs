@@ -261,6 +261,67 @@ fn a_zero_mark_is_dragged_and_the_scale_stays_as_it_was_set() {
 }
 
 #[test]
+fn dragging_the_second_button_zooms_into_a_box_and_the_axis_zooms_time() {
+    let mut bench = bench();
+    bench.pass_ms(9000);
+    let place = plot(&bench);
+    let frame = brushwork_gui::graph::picture::frame::Frame::new(place, graph(&mut bench).live.window());
+    let (start_s, end_s) = graph(&mut bench).live.window();
+    let before = graph(&mut bench).live.channels[PWM].scale;
+    let (from, to) = (frame.plot.min + frame.plot.size() * 0.25, frame.plot.min + frame.plot.size() * 0.75);
+    bench.harness.hover_at(from);
+    bench.harness.step();
+    let second = |pos: Pos2, pressed: bool| {
+        let (button, modifiers) = (egui::PointerButton::Secondary, Modifiers::NONE);
+        egui::Event::PointerButton { pos, button, pressed, modifiers }
+    };
+    bench.harness.event(second(from, true));
+    bench.harness.step();
+    // The box begins where the first few pixels have told a drag from a click.
+    for part in 0..=20u8 {
+        bench
+            .harness
+            .hover_at(from + vec2(8.0, 8.0) + (to - from - vec2(8.0, 8.0)) * (f32::from(part) / 20.0));
+        bench.harness.step();
+    }
+    bench.harness.event(second(to, false));
+    bench.harness.step();
+    let live = &graph(&mut bench).live;
+    assert!(live.is_held(), "a box of time stands");
+    let now = live.window();
+    let part = (now.1 - now.0) / (end_s - start_s);
+    assert!((part - 0.5).abs() < 0.04, "half of {start_s} to {end_s} became {now:?}");
+    let after = live.channels[PWM].scale;
+    let height = (after.high - after.low) / (before.high - before.low);
+    assert!((height - 0.5).abs() < 0.06, "{before:?} became {after:?}");
+    bench.press("Back to live");
+    let span_s = graph(&mut bench).live.span_s();
+    let axis = egui::pos2(frame.plot.center().x, frame.plot.bottom() + 8.0);
+    drag(&mut bench, axis, axis + vec2(30.0, 0.0));
+    assert!(graph(&mut bench).live.span_s() < span_s * 0.9, "the time axis zooms");
+    assert!(!graph(&mut bench).live.is_held(), "and the picture goes on following");
+}
+
+#[test]
+fn where_the_list_is_folded_away_a_legend_in_the_plot_shows_and_hides_the_channels() {
+    let mut bench = bench();
+    let wide = plot(&bench).width();
+    graph(&mut bench).act(brushwork_gui::graph::GraphAction::ToggleList);
+    bench.pass_ms(300);
+    assert!(plot(&bench).width() > wide + 200.0, "the plot has the room of the list");
+    assert!(!bench.sees("Show M1 PWM"));
+    bench.press("M1 PWM");
+    bench.pass_ms(200);
+    assert!(!graph(&mut bench).live.channels[PWM].shown);
+    bench.press("M1 PWM");
+    bench.pass_ms(200);
+    assert!(graph(&mut bench).live.channels[PWM].shown, "its row stays in the legend");
+    graph(&mut bench).act(brushwork_gui::graph::GraphAction::ToggleList);
+    bench.pass_ms(200);
+    assert!(bench.sees("Show M1 PWM"));
+}
+
+#[test]
 fn lost_and_late_samples_are_counted_beside_the_rate_that_was_reached() {
     let mut bench = bench();
     assert!(bench.sees_part("10.0 samples/s, 10 asked"), "the rate is told");

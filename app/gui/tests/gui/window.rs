@@ -25,12 +25,74 @@ fn the_simulated_controller_is_in_the_list_and_connects() {
 fn before_a_controller_is_connected_every_place_says_what_to_do() {
     let mut bench = Bench::new();
     bench.pass_ms(200);
-    assert!(bench.sees_part("Choose a device at the left and press Connect"));
+    assert!(bench.sees("Start"));
     assert!(bench.sees("M1 encoder: no value"));
     assert!(bench.sees("ESTP: unknown"));
     assert!(bench.see("Zero M1 encoder").accesskit_node().is_disabled());
+    for screen in ["PWM Settings", "Velocity Settings", "General Settings"] {
+        bench.press(screen);
+        assert!(bench.sees_part("No serial port is there. Plug the controller in"), "{screen}");
+        assert!(bench.sees("Open MCP266") && bench.sees("Open Motion Mind 3"), "{screen}");
+    }
+    bench.press("MCL Editor");
+    assert!(!bench.sees("Start"), "programs are written without a controller");
+}
+
+#[test]
+fn the_start_page_opens_a_simulated_controller_a_port_and_what_was_open_before() {
+    let mut bench = Bench::new();
+    bench.pass_ms(200);
+    bench.press("Open MCP266");
+    bench.pass_ms(1000);
+    assert!(bench.sees("Model: MCP266 (simulated)"));
+    bench.press("Disconnect");
+    bench.pass_ms(500);
+    bench.press("Start page");
+    assert!(bench.sees("sim:mcp266"), "what was open before");
+    bench.plug_in_port("/dev/ttyUSB3");
+    bench.pass_ms(200);
+    bench.press("Connect to /dev/ttyUSB3");
+    bench.pass_ms(500);
+    assert!(bench.sees_part("/dev/ttyUSB3"), "{:?}", bench.said());
+}
+
+#[test]
+fn what_is_in_the_way_of_a_port_is_told_with_what_to_type() {
+    let mut bench = Bench::new();
+    bench.pass_ms(200);
+    assert!(!bench.sees_part("Use a cable that carries data"));
+    bench.press("It does not appear, or cannot be opened");
+    bench.pass_ms(500);
+    assert!(bench.sees_part("Use a cable that carries data"));
+    #[cfg(target_os = "linux")]
+    assert!(bench.sees_part("sudo usermod -aG"));
+}
+
+#[test]
+fn a_lost_link_leaves_the_graph_under_a_band_and_connecting_again_arms_nothing() {
+    let mut bench = Bench::new();
+    bench.connect();
+    bench.arm();
+    bench.set_duty(Motor::M1, "40");
+    bench.pass_ms(1500);
+    let rows = bench.model().front.graph.live.track.history.rows().end;
+    bench.act(&WorldAction::Unplug { unplugged: true });
+    bench.pass_ms(3000);
+    assert!(bench.sees_part("Link lost"), "{:?}", bench.said());
+    assert!(bench.sees_part("the controller stops its motors by itself after"), "what it does by itself");
+    assert!(bench.sees_part("Live graph of the last"), "what was sampled stays in sight");
+    assert!(bench.model().front.graph.live.track.history.rows().end >= rows);
+    bench.press("Device Status");
+    assert!(bench.sees_part("Link lost"), "the same band above what happened");
+    assert!(bench.sees("EVENT HISTORY"));
     bench.press("PWM Settings");
-    assert!(bench.sees_part("The simulated MCP266 needs no hardware"));
+    bench.act(&WorldAction::Unplug { unplugged: false });
+    bench.press("Connect to sim:mcp266 again");
+    bench.pass_ms(1500);
+    assert!(bench.sees("Model: MCP266 (simulated)") && !bench.sees_part("Link lost"));
+    assert_eq!(bench.model().front.link.arming, brushwork_gui::model::Arming::Disarmed);
+    bench.pass_ms(500);
+    assert!(bench.both_stand());
 }
 
 #[test]

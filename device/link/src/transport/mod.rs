@@ -20,6 +20,7 @@ pub use channel::ChannelTransport;
 pub use error::{OpenError, TargetError};
 pub use port_info::PortInfo;
 pub use ports::list_ports;
+pub use refused::owning_group;
 pub use serial::SerialTransport;
 pub use stream::Stream;
 pub use target::ConnectTarget;

@@ -48,9 +48,10 @@ pub(super) fn is_no_device(_path: &str) -> bool {
     false
 }
 
-/// The name of the group that owns a device, if it is not root's.
+/// The name of the group that owns a device, if it is not root's: whoever is in it may open the device.
 #[cfg(unix)]
-fn owning_group(path: &str) -> Option<String> {
+#[must_use]
+pub fn owning_group(path: &str) -> Option<String> {
     use std::os::unix::fs::MetadataExt;
     let number = std::fs::metadata(path).ok()?.gid();
     let groups = std::fs::read_to_string("/etc/group").ok()?;
@@ -60,8 +61,10 @@ fn owning_group(path: &str) -> Option<String> {
         .or(Some("dialout".to_owned()))
 }
 
+/// Windows has no groups that own devices.
 #[cfg(not(unix))]
-fn owning_group(_path: &str) -> Option<String> {
+#[must_use]
+pub fn owning_group(_path: &str) -> Option<String> {
     None
 }
 

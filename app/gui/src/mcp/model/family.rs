@@ -200,6 +200,10 @@ impl Family for Mcp {
         &[HELP_SETTINGS, HELP_COMMANDS, HELP_MCL]
     }
 
+    fn simulated_axis(&self) -> &'static str {
+        "Two motors with encoders that turn freely, on a battery"
+    }
+
     fn simulated(&self) -> Vec<(&'static str, &'static str)> {
         let is_first = |key: &str| key == FIRST;
         let listed = || MODELS.iter().map(|model| (model.key, model.name));

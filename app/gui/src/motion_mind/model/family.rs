@@ -114,6 +114,10 @@ impl Family for MotionMind {
         &[HELP]
     }
 
+    fn simulated_axis(&self) -> &'static str {
+        "One motor with an encoder that turns freely, on a battery"
+    }
+
     fn simulated(&self) -> Vec<(&'static str, &'static str)> {
         vec![("motion-mind-3", "Motion Mind 3")]
     }

@@ -11,7 +11,7 @@ use crate::model::{Model, Screen};
 use crate::motion_mind::model::Driven;
 use crate::motion_mind::model::drive::{LOOPS_PER_S, VELOCITY_RANGE};
 use crate::screens::drive::{Output, drive_ui, motor_ui, on_release_ui, options_ui, pace_ui};
-use crate::screens::{not_connected_text, nothing_ui, title_ui};
+use crate::screens::title_ui;
 use crate::widgets::{Numeric, Setpoint};
 
 const fn output(scope: ArmScope, word: &'static str, channel: Channel, unit: &'static str) -> Output {
@@ -23,93 +23,81 @@ const VELOCITY: Output = output(ArmScope::Velocity, "measured", Channel::M1_VELO
 const POSITION: Output = output(ArmScope::Position, "measured", Channel::M1_POSITION, "counts");
 
 pub fn duty_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-    if let Some(head) = head(
-        ui,
-        model,
+    let head = (
         "Duty",
         "Mode 3, serial open loop. The unit changes the duty by VELOCITYLIMIT in each TIMER.",
         ArmScope::Pwm,
-    ) {
-        drive_ui(ui, model, head, commands, |ui, model| {
-            let held = motor_ui(ui, model, Motor::M1, &DUTY, |ui, model| {
-                let slider =
-                    Setpoint { name: "Motor duty", unit: "%", range: -100.0..=100.0, decimals: 1, step: 0.1 };
-                let mut duty = model.front.pwm.setpoints.values[0];
-                let moved = slider.ui(ui, &mut duty);
-                if ui.is_enabled() {
-                    model.front.pwm.setpoints.hold(Motor::M1, moved.held);
-                    if moved.changed {
-                        model.front.pwm.set_duty(Motor::M1, duty);
-                    }
+    );
+    drive_ui(ui, model, head, commands, |ui, model| {
+        let held = motor_ui(ui, model, Motor::M1, &DUTY, |ui, model| {
+            let slider =
+                Setpoint { name: "Motor duty", unit: "%", range: -100.0..=100.0, decimals: 1, step: 0.1 };
+            let mut duty = model.front.pwm.setpoints.values[0];
+            let moved = slider.ui(ui, &mut duty);
+            if ui.is_enabled() {
+                model.front.pwm.setpoints.hold(Motor::M1, moved.held);
+                if moved.changed {
+                    model.front.pwm.set_duty(Motor::M1, duty);
                 }
-            });
-            model.front.pwm.jog(Motor::M1, held);
-            options_ui(ui, |ui| {
-                on_release_ui(ui, &mut model.front.pwm.setpoints);
-                ui.separator();
-                let jog = number("Jog duty", "%", 0.0..=100.0, 1.0);
-                pace_ui(
-                    ui,
-                    "Jog",
-                    "The duty while a jog button is held",
-                    &jog,
-                    &mut model.front.pwm.jog_percent,
-                );
-                ui.weak("For velocity and positions set the switches to mode 4.");
-            });
+            }
         });
-    }
+        model.front.pwm.jog(Motor::M1, held);
+        options_ui(ui, |ui| {
+            on_release_ui(ui, &mut model.front.pwm.setpoints);
+            ui.separator();
+            let jog = number("Jog duty", "%", 0.0..=100.0, 1.0);
+            pace_ui(ui, "Jog", "The duty while a jog button is held", &jog, &mut model.front.pwm.jog_percent);
+            ui.weak("For velocity and positions set the switches to mode 4.");
+        });
+    });
 }
 
 pub fn velocity_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-    if let Some(head) = head(
-        ui,
-        model,
+    let head = (
         "Velocity",
         "Mode 4, serial PID: the unit holds a velocity in whole counts per loop of 5 ms.",
         ArmScope::Velocity,
-    ) {
-        drive_ui(ui, model, head, commands, |ui, model| {
-            let held = motor_ui(ui, model, Motor::M1, &VELOCITY, |ui, model| {
-                let top = model.front.mind().reach.top_counts_per_loop;
-                let slider =
-                    Setpoint { name: "Motor velocity", unit: "", range: -top..=top, decimals: 0, step: 1.0 };
-                let mut asked = model.front.velocity.setpoints.values[0];
-                let moved = slider.ui(ui, &mut asked);
-                if ui.is_enabled() {
-                    model.front.velocity.setpoints.hold(Motor::M1, moved.held);
-                    if moved.changed {
-                        model.front.ask_velocity(asked);
-                    }
+    );
+    drive_ui(ui, model, head, commands, |ui, model| {
+        let held = motor_ui(ui, model, Motor::M1, &VELOCITY, |ui, model| {
+            let top = model.front.mind().reach.top_counts_per_loop;
+            let slider =
+                Setpoint { name: "Motor velocity", unit: "", range: -top..=top, decimals: 0, step: 1.0 };
+            let mut asked = model.front.velocity.setpoints.values[0];
+            let moved = slider.ui(ui, &mut asked);
+            if ui.is_enabled() {
+                model.front.velocity.setpoints.hold(Motor::M1, moved.held);
+                if moved.changed {
+                    model.front.ask_velocity(asked);
                 }
-            });
-            model.front.jog_velocity(held);
-            options_ui(ui, |ui| {
-                on_release_ui(ui, &mut model.front.velocity.setpoints);
-                ui.separator();
-                let reach = &mut model.front.mind_mut().reach;
-                let jog = number("Jog velocity", "counts/loop", VELOCITY_RANGE, 1.0);
-                pace_ui(
-                    ui,
-                    "Jog",
-                    "The velocity while a jog button is held",
-                    &jog,
-                    &mut reach.jog_counts_per_loop,
-                );
-                let top = number("Slider end", "counts/loop", VELOCITY_RANGE, 1.0);
-                pace_ui(
-                    ui,
-                    "Slider to",
-                    "How far the slider goes either way",
-                    &top,
-                    &mut reach.top_counts_per_loop,
-                );
-                let asked = model.front.velocity.setpoints.values[0];
-                let text = format!("Asked: {asked:.0} counts/loop = {:.0} counts/s", asked * LOOPS_PER_S);
-                ui.weak(text);
-            });
+            }
         });
-    }
+        model.front.jog_velocity(held);
+        options_ui(ui, |ui| {
+            on_release_ui(ui, &mut model.front.velocity.setpoints);
+            ui.separator();
+            let reach = &mut model.front.mind_mut().reach;
+            let jog = number("Jog velocity", "counts/loop", VELOCITY_RANGE, 1.0);
+            pace_ui(
+                ui,
+                "Jog",
+                "The velocity while a jog button is held",
+                &jog,
+                &mut reach.jog_counts_per_loop,
+            );
+            let top = number("Slider end", "counts/loop", VELOCITY_RANGE, 1.0);
+            pace_ui(
+                ui,
+                "Slider to",
+                "How far the slider goes either way",
+                &top,
+                &mut reach.top_counts_per_loop,
+            );
+            let asked = model.front.velocity.setpoints.values[0];
+            let text = format!("Asked: {asked:.0} counts/loop = {:.0} counts/s", asked * LOOPS_PER_S);
+            ui.weak(text);
+        });
+    });
 }
 
 pub fn position_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
@@ -120,9 +108,7 @@ pub fn position_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         }
         _ => "Mode 4, serial PID: the unit goes to a count of the encoder and holds it.",
     };
-    if let Some(head) = head(ui, model, "Position", note, ArmScope::Position) {
-        drive_ui(ui, model, head, commands, position_controls_ui);
-    }
+    drive_ui(ui, model, ("Position", note, ArmScope::Position), commands, position_controls_ui);
 }
 
 fn position_controls_ui(ui: &mut Ui, model: &mut Model) {
@@ -185,26 +171,8 @@ fn number<'a>(name: &'a str, unit: &'a str, range: std::ops::RangeInclusive<f64>
     Numeric { name, unit, range, decimals: 0, step, width: 108.0 }
 }
 
-/// Title, note and scope of a screen that drives; none before a unit has answered.
-fn head(
-    ui: &mut Ui,
-    model: &Model,
-    title: &'static str,
-    note: &'static str,
-    scope: ArmScope,
-) -> Option<(&'static str, &'static str, ArmScope)> {
-    if model.front.link.identity().is_none() {
-        nothing_ui(ui, &not_connected_text(&model.front.phase));
-        return None;
-    }
-    Some((title, note, scope))
-}
-
 /// What moves the motor in a mode that is not driven from here, and which mode to set.
 pub fn motion_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-    if model.front.link.identity().is_none() {
-        return nothing_ui(ui, &not_connected_text(&model.front.phase));
-    }
     debug_assert_eq!(model.front.driven(), Driven::Nothing);
     title_ui(ui, "Motion", "What moves this motor, and how to move it from here.");
     let (what, how) = mode_text(model.front.mode());

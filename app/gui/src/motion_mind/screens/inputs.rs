@@ -9,7 +9,7 @@ use crate::model::{Connection, IndicatorState, Model};
 use crate::motion_mind::MindAction;
 use crate::motion_mind::model::radio::{STEP_MS, Stage, WIDE};
 use crate::motion_mind::model::registers::in_unit;
-use crate::screens::{not_connected_text, nothing_ui, title_ui};
+use crate::screens::title_ui;
 use crate::theme::{self, Palette};
 use crate::widgets::label::fixed_label_ui;
 
@@ -18,9 +18,6 @@ const BAR_WIDTH: f32 = 150.0;
 const ROW_HEIGHT: f32 = 26.0;
 
 pub fn inputs_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-    if model.front.link.identity().is_none() {
-        return nothing_ui(ui, &not_connected_text(&model.front.phase));
-    }
     title_ui(ui, "Inputs and R/C", "What the unit measures at its pins, and ends of the stick for mode 0.");
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         let columns = if ui.available_width() < 700.0 { 1 } else { 2 };

@@ -7,7 +7,7 @@ use egui::{ComboBox, Key, Label, RichText, ScrollArea, Ui, vec2};
 use crate::command::{Command, Commands};
 use crate::model::Model;
 use crate::motion_mind::model::terminal::{Entry, Form, Terminal, Understood};
-use crate::screens::{not_connected_text, nothing_ui, title_ui};
+use crate::screens::title_ui;
 use crate::theme::Palette;
 use crate::widgets::{choice_ui, text_field_ui};
 
@@ -20,9 +20,7 @@ pub fn terminal_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         .link
         .identity()
         .and_then(|identity| Some((identity.address, MotionMindFacts::of(identity)?)));
-    let Some((address, facts)) = unit else {
-        return nothing_ui(ui, &not_connected_text(&model.front.phase));
-    };
+    let Some((address, facts)) = unit else { return };
     let note = match facts.protocol {
         Protocol::Binary => {
             "Commands by hand, in text or in hex. This unit speaks binary. The traffic (Ctrl+T) shows every byte."

@@ -5,7 +5,7 @@
 
 use egui::{Align, Layout, Ui, vec2};
 
-use super::{face, not_connected_text, nothing_ui};
+use super::face;
 use crate::command::{Command, Commands};
 use crate::model::{Model, Section, SettingsAction};
 
@@ -39,9 +39,6 @@ pub fn framed_ui(
     commands: &mut Commands,
     list_ui: impl FnOnce(&mut Ui, &mut Model, &mut Commands),
 ) {
-    if model.front.link.identity().is_none() {
-        return nothing_ui(ui, &not_connected_text(&model.front.phase));
-    }
     let family = model.front.family();
     let stream = model.front.link.stream;
     let general = &mut model.front.general_view();

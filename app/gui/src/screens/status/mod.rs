@@ -3,7 +3,7 @@
 
 use egui::{Align, Layout, ScrollArea, Ui};
 
-use super::{face, not_connected_text, nothing_ui, title_ui};
+use super::{face, title_ui};
 use crate::command::Commands;
 use crate::model::{IndicatorState, Model};
 
@@ -11,19 +11,12 @@ mod history;
 mod indicators;
 mod unit;
 
+pub(super) use history::history_ui;
+
 /// Width from which two columns fit.
 const TWO_COLUMNS_FROM: f32 = 600.0;
 
 pub fn status_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-    if model.front.link.identity().is_none() {
-        let hint = not_connected_text(&model.front.phase);
-        if model.front.history.is_empty() {
-            return nothing_ui(ui, &hint);
-        }
-        // What happened before the link ended can still be read.
-        title_ui(ui, "Device Status", hint.lines().next().unwrap_or_default());
-        return history::history_ui(ui, &mut model.front.history, ui.available_height());
-    }
     title_ui(ui, "Device Status", headline(model));
     // Side by side where there is room, else below each other.
     let columns = if ui.available_width() < TWO_COLUMNS_FROM { 1 } else { 2 };
@@ -36,7 +29,7 @@ pub fn status_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         ui.columns(columns, |ui| {
             // Columns stretch their text from edge to edge, which no paragraph is read by.
             let left = Layout::top_down(Align::Min);
-            ui[0].with_layout(left, |ui| history::history_ui(ui, &mut model.front.history, height));
+            ui[0].with_layout(left, |ui| history_ui(ui, &mut model.front.history, height));
             ui[columns - 1].with_layout(left, |ui| {
                 face.leds_ui(ui, &model.front);
                 indicators::active_ui(ui, &model.front);

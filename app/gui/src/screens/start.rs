@@ -1,0 +1,204 @@
+//! The start page: what can be connected to and how, what can be tried without hardware, and what can be opened without a controller.
+
+use brushwork_link::PortInfo;
+use egui::{Align, Button, Frame, Layout, Margin, RichText, ScrollArea, Stroke, Ui};
+
+use crate::command::{Command, Commands};
+use crate::family::{self, Family};
+use crate::graph::files::OpenAs;
+use crate::model::devices::{Choice, described};
+use crate::model::{Model, Screen};
+use crate::theme::Palette;
+use crate::tune::sketches::{Sketch, sketch_ui};
+use crate::widgets::heading_ui;
+
+/// Width from which two columns fit.
+const TWO_COLUMNS_FROM: f32 = 640.0;
+/// Recent connections that are offered here; the rest stand in the list at the left.
+const RECENT_SHOWN: usize = 4;
+
+pub fn start_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+    ui.heading("Start");
+    ui.add_space(4.0);
+    let columns = if ui.available_width() < TWO_COLUMNS_FROM { 1 } else { 2 };
+    ScrollArea::vertical().show(ui, |ui| {
+        ui.columns(columns, |ui| {
+            // Columns stretch their text from edge to edge, which no paragraph is read by.
+            let left = Layout::top_down(Align::Min);
+            ui[0].with_layout(left, |ui| {
+                ports_ui(ui, model, commands);
+                recent_ui(ui, model, commands);
+                ui.add_space(10.0);
+                files_ui(ui, model, commands);
+            });
+            ui[columns - 1].with_layout(left, |ui| simulated_ui(ui, commands));
+        });
+    });
+}
+
+/// The ports as they come and go, and what may be in the way.
+fn ports_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+    heading_ui(ui, "Your controller");
+    let ports = model.devices.ports.clone();
+    for port in &ports {
+        ui.horizontal(|ui| {
+            if ui.button(format!("Connect to {}", port.name)).clicked() {
+                model.devices.choice = Choice::Port(port.name.clone());
+                commands.push(Command::Connect);
+            }
+            ui.weak(described(port));
+        });
+    }
+    match (&model.devices.listing_failure, ports.is_empty()) {
+        (Some(failure), _) => {
+            ui.label(failure.to_string());
+        }
+        (None, true) => {
+            ui.label("No serial port is there. Plug the controller in: its port appears here by itself.");
+        }
+        (None, false) => {}
+    }
+    ui.weak("Family, baud rate and address are chosen at the left, where a path, tcp:HOST:PORT or a CAN adapter can be typed too.");
+    ui.collapsing("It does not appear, or cannot be opened", |ui| in_the_way_ui(ui, &ports));
+}
+
+/// What keeps a port from appearing or opening on a system, each with what to type where there is something.
+fn in_the_way(system: &str, ports: &[PortInfo]) -> Vec<(&'static str, Option<String>)> {
+    let cable = (
+        "Use a cable that carries data, and switch the controller's own supply on: USB alone does not power every board.",
+        None,
+    );
+    let mut advice = vec![cable];
+    match system {
+        "linux" => {
+            let group = ports.iter().find_map(|port| brushwork_link::transport::owning_group(&port.name));
+            let group = group.unwrap_or_else(|| "dialout".to_owned());
+            advice.extend([
+                (
+                    "Your user needs the right to open serial ports. Run this, then log out and in again:",
+                    Some(format!("sudo usermod -aG {group} $USER")),
+                ),
+                (
+                    "ModemManager opens new ports and writes to them. If the first connection fails, keep it away:",
+                    Some("sudo systemctl disable --now ModemManager".to_owned()),
+                ),
+                (
+                    "Where the port never appears, see what the system says when the cable is plugged in:",
+                    Some("sudo dmesg --follow".to_owned()),
+                ),
+            ]);
+        }
+        "windows" => advice.extend([
+            ("The Device Manager lists the port under Ports (COM & LPT), with its number.", Some("devmgmt.msc".to_owned())),
+            (
+                "Windows 10 and newer have the driver for a controller's own USB. An adapter needs its maker's: FTDI, Prolific, CH340 or CP210x.",
+                None,
+            ),
+            ("A port that another program holds cannot be opened: close Ion Studio, Motion Studio and serial monitors.", None),
+        ]),
+        "macos" => advice.extend([
+            ("Use the name that begins with cu., not tty.:", Some("ls /dev/cu.*".to_owned())),
+            ("An adapter may need its maker's driver, which System Settings, Privacy & Security, asks to allow.", None),
+        ]),
+        _ => {}
+    }
+    advice.push((
+        "On a serial adapter, its ground must be joined to the controller's, RX goes to TX, and the baud rate must be the one that is set there.",
+        None,
+    ));
+    advice
+}
+
+fn in_the_way_ui(ui: &mut Ui, ports: &[PortInfo]) {
+    for (text, typed) in in_the_way(std::env::consts::OS, ports) {
+        ui.label(text);
+        let Some(typed) = typed else { continue };
+        ui.horizontal(|ui| {
+            ui.code(&typed);
+            if ui.button("Copy").on_hover_text(format!("Copies {typed}")).clicked() {
+                ui.ctx().copy_text(typed);
+            }
+        });
+    }
+}
+
+fn recent_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
+    if model.devices.recent.is_empty() {
+        return;
+    }
+    ui.add_space(10.0);
+    heading_ui(ui, "Connected to before");
+    for target in model.devices.recent.iter().take(RECENT_SHOWN) {
+        if ui.button(target).clicked() {
+            commands.push(Command::ConnectTo(target.clone()));
+        }
+    }
+}
+
+/// What needs no controller.
+fn files_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+    heading_ui(ui, "Without a controller");
+    ui.horizontal_wrapped(|ui| {
+        if ui.button("Open a recording…").on_hover_text("A .csv or .bwr file, in the graph").clicked() {
+            model.front.graph.files.open_as = OpenAs::Recording;
+            model.front.graph.files.choose_recording();
+            commands.push(Command::Show(Screen::Pwm));
+        }
+        if ui.button("Write a script").on_hover_text("The MCL editor, which checks what is written").clicked()
+        {
+            commands.push(Command::Show(Screen::MclEditor));
+        }
+        if ui.button("CAN bus…").on_hover_text("Adapters, nodes and what they say").clicked() {
+            commands.push(Command::OpenCanOpen);
+        }
+    });
+    if let Some(text) = model.front.graph.files.loading_text() {
+        ui.weak(text);
+    }
+}
+
+/// One controller of each family, with a picture of the axis that it drives.
+fn simulated_ui(ui: &mut Ui, commands: &mut Commands) {
+    heading_ui(ui, "A simulated controller, in this program");
+    ui.weak("It answers like the real one, with motors, supply and faults of its own. Nothing can break.");
+    for family in family::all() {
+        card_ui(ui, *family, commands);
+    }
+    ui.weak("Other models are chosen at the left, beside Simulated.");
+}
+
+fn card_ui(ui: &mut Ui, family: &dyn Family, commands: &mut Commands) {
+    let Some((key, name)) = family.simulated().first().copied() else { return };
+    ui.add_space(6.0);
+    let outline = Stroke::new(1.0, Palette::of(ui).line);
+    Frame::new().stroke(outline).corner_radius(4.0).inner_margin(Margin::same(8)).show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        ui.horizontal(|ui| {
+            ui.label(RichText::new(name).strong());
+            ui.weak(family.family().label());
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                if ui.add(Button::new(format!("Open {name}"))).clicked() {
+                    commands.push(Command::ConnectTo(format!("sim:{key}")));
+                }
+            });
+        });
+        sketch_ui(ui, &Sketch::sound(family.simulated_axis()));
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_system_has_its_own_advice_and_linux_the_very_commands() {
+        let typed = |system| -> Vec<String> {
+            in_the_way(system, &[]).into_iter().filter_map(|(_, typed)| typed).collect()
+        };
+        assert_eq!(typed("linux")[0], "sudo usermod -aG dialout $USER");
+        assert!(typed("linux").iter().any(|typed| typed.contains("ModemManager")));
+        assert_eq!(typed("windows"), ["devmgmt.msc"]);
+        assert_eq!(typed("macos"), ["ls /dev/cu.*"]);
+        assert_eq!(in_the_way("plan9", &[]).len(), 2, "what is true everywhere");
+    }
+}
