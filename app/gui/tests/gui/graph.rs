@@ -285,7 +285,7 @@ fn dragging_the_second_button_zooms_into_a_box_and_the_axis_zooms_time() {
         bench.harness.step();
     }
     bench.harness.event(second(to, false));
-    bench.harness.step();
+    bench.pass_ms(200);
     let live = &graph(&mut bench).live;
     assert!(live.is_held(), "a box of time stands");
     let now = live.window();
