@@ -1,13 +1,16 @@
 //! From statements to macros: names, numbers and ranges, and what is likely to be a mistake.
 
 use super::codes;
+use super::lexer;
 use super::parser::{Operand, Statement, WrittenCommand, statements};
-use super::{LONGEST_TEXT, lexer};
 use brushwork_script::diagnostic::{Diagnostic, Severity};
 use brushwork_script::text::Span;
 use brushwork_suprmotr_wire::{
     Absent, COMMANDS, Command, EncodeError, LAST_MACRO, Line, MOST_COMMANDS, Mnemonic, Radix,
 };
+
+/// A text of more bytes is refused: far more than 15 macros with all their comments need.
+pub const LONGEST_TEXT: usize = 256 * 1024;
 
 /// A macro of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -10,9 +10,6 @@ mod lexer;
 mod parser;
 mod written;
 
-pub use check::{Checked, Macro, check};
+pub use check::{Checked, LONGEST_TEXT, Macro, check};
 pub use format::format;
 pub use written::written;
-
-/// A text of more bytes is refused: far more than 15 macros with all their comments need.
-pub const LONGEST_TEXT: usize = 256 * 1024;

@@ -1,4 +1,4 @@
-//! SuprMotr controllers.
+//! SuprMotr controllers as the device thread sees them: how they are found, read, driven, stopped and armed.
 //!
 //! [`SuprMotrs`] finds units, [`SuprMotr`] is one of them. What it reads, how it drives, stops and is armed stand in a file each.
 //!
