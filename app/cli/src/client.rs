@@ -75,14 +75,29 @@ impl Client {
         interrupt: &Interrupt,
     ) -> Result<Self, Exit> {
         alone(args)?;
-        let session = open(args, poll, running)?;
+        let mut session = open(args, poll, running)?;
         interrupt.hold_line();
         if let Some(simulation) = &session.simulation {
             simulation.unlike().iter().for_each(say);
         }
         let place = args.place();
-        let (identity, stream) =
-            wait_for_identity(&session.device, interrupt).map_err(|exit| with_loader(exit, place))?;
+        let no_link = |failure: Failure| with_loader(Exit::NoLink.saying(failure), place);
+        let (identity, stream) = match wait_for_identity(&session.device, interrupt)? {
+            Ok(found) => found,
+            Err(failure) => {
+                // The line is exclusive: it is given back before it is searched.
+                drop(session);
+                let Some(unit) = elsewhere(args, interrupt)? else { return Err(no_link(failure)) };
+                let options = SessionOptions {
+                    addresses: Addresses::Only(unit.address),
+                    family: FamilyChoice::of(unit.family),
+                    poll,
+                };
+                session = session::open(&target(args)?, options, SystemClock::shared(), None)
+                    .map_err(|error| Exit::NoLink.saying(error))?;
+                wait_for_identity(&session.device, interrupt)?.map_err(no_link)?
+            }
+        };
         Store::of_user().close_update(place);
         Ok(Self { session, identity, stream })
     }
@@ -240,6 +255,37 @@ fn look_on(session: &Session, interrupt: &Interrupt) -> Result<(Vec<Identity>, V
     Ok((found, failures))
 }
 
+/// The one unit of a line of a named family that answers at another address than that of a new one, where the user has named none. A line
+/// of which nothing is known is not searched: its families have more than 120 addresses, and the failure says which family to name.
+///
+/// # Errors
+/// Several answer, which is said; or the program was asked to end.
+fn elsewhere(args: &ConnectArgs, interrupt: &Interrupt) -> Result<Option<Identity>, Exit> {
+    let target = target(args)?;
+    let is_line = matches!(target, ConnectTarget::Serial { .. } | ConnectTarget::Tcp { .. });
+    let named = family(&target, args);
+    if args.address.is_some() || !is_line || named == FamilyChoice::AUTO {
+        return Ok(None);
+    }
+    say(CliLinkMessage::LooksElsewhere);
+    let options = SessionOptions { addresses: Addresses::Scan, family: named, poll: PollRate::Off };
+    // A line that cannot be opened any more has failed for a reason that is told already.
+    let Ok(session) = session::open(&target, options, SystemClock::shared(), None) else { return Ok(None) };
+    let (found, _) = look_on(&session, interrupt)?;
+    match found.as_slice() {
+        [] => Ok(None),
+        [unit] => {
+            let (title, place) = (unit.title().to_owned(), unit.named_place());
+            say(CliLinkMessage::FoundElsewhere { unit: title, place });
+            Ok(Some(unit.clone()))
+        }
+        several => {
+            let places: Vec<_> = several.iter().map(Identity::place).collect();
+            Err(Exit::Usage.saying(CliLinkMessage::SeveralElsewhere { places: places.join(", ") }))
+        }
+    }
+}
+
 /// Says what is known of a place at which nobody answers.
 pub fn with_loader(exit: Exit, place: &str) -> Exit {
     let waiting = (exit == Exit::NoLink).then(|| session::waiting_at(place)).flatten();
@@ -247,19 +293,24 @@ pub fn with_loader(exit: Exit, place: &str) -> Exit {
     exit
 }
 
+/// The unit that is selected, or why the link is gone.
 fn wait_for_identity(
     device: &DeviceHandle,
     interrupt: &Interrupt,
-) -> Result<(Identity, Option<Stream>), Exit> {
+) -> Result<Result<(Identity, Option<Stream>), Failure>, Exit> {
     let deadline = Instant::now() + CONNECT_LIMIT;
     let mut found: Vec<Identity> = Vec::new();
     while Instant::now() < deadline {
-        match next_event(device, interrupt)? {
+        let event = match look_for_event(device, interrupt)? {
+            Ok(event) => event,
+            Err(failure) => return Ok(Err(failure)),
+        };
+        match event {
             Some(Event::Connected(identity)) => found.push(identity),
             Some(Event::Selected { address, stream }) => {
                 let selected = found.iter().find(|identity| identity.address == address).cloned();
                 if let Some(identity) = selected {
-                    return Ok((identity, stream));
+                    return Ok(Ok((identity, stream)));
                 }
             }
             Some(Event::Failure(failure)) => say(failure.to_string()),

@@ -56,6 +56,34 @@ fn a_served_unit_answers_in_lines() {
 }
 
 #[test]
+fn a_unit_that_is_alone_is_found_at_whatever_address_it_has_and_of_several_each_is_named() {
+    let status = |addresses: &str, options: &[&str]| {
+        let (program, stream) = served(&["--address", addresses, "--mode", "3"]);
+        let place = format!("tcp:{}", stream.peer_addr().expect("it is connected"));
+        drop(stream);
+        let arguments = [&["status", "--connect", &place], options].concat();
+        let ending = Program::start(BRUSHWORK, &arguments).finish(LIMIT);
+        drop(program);
+        ending
+    };
+    let named = &["--family", "motion-mind"];
+    let ending = status("7", named);
+    assert_eq!(ending.status.code(), Some(0), "{ending:?}");
+    assert!(ending.stderr.iter().any(|line| line.contains("Motion Mind 3 answers at unit 7")), "{ending:?}");
+    let ending = status("3,7", named);
+    assert_eq!(ending.status.code(), Some(2), "{ending:?}");
+    assert!(
+        ending.stderr.iter().any(|line| line.contains("unit 3, unit 7") && line.contains("--address")),
+        "{ending:?}"
+    );
+    let ending = status("7", &[]);
+    assert_eq!(ending.status.code(), Some(3), "{ending:?}");
+    assert!(ending.stderr.iter().any(|line| line.contains("family=motion-mind")), "{ending:?}");
+    let ending = status("3,7", &["--address", "7"]);
+    assert_eq!((ending.status.code(), ending.stderr.len()), (Some(0), 0), "{ending:?}");
+}
+
+#[test]
 fn stop_finds_and_stops_units_at_other_addresses_than_the_factorys_without_being_told_the_family() {
     let (program, mut stream) = served(&["--address", "3,7", "--mode", "3"]);
     let port = stream.peer_addr().expect("it is connected").to_string();
