@@ -97,14 +97,15 @@ impl Scale {
         self.low + part * (self.high - self.low)
     }
 
-    /// Digits after the point that the labels of the divisions need.
+    /// Digits after the point that the labels of the divisions need; of divisions that are not round, two figures.
     pub fn decimals(&self) -> usize {
-        let division = (self.high - self.low).abs() / DIVISIONS as f64;
+        let division = self.division().abs();
         let is_whole = |digits: usize| {
             let shifted = division * 10f64.powi(digits as i32);
             (shifted - shifted.round()).abs() < 1e-6 * shifted.max(1.0)
         };
-        (0..5).find(|digits| is_whole(*digits)).unwrap_or(5)
+        let enough = (1.0 - division.max(1e-9).log10().floor()).clamp(0.0, 5.0) as usize;
+        (0..=(enough + 1).min(5)).find(|digits| is_whole(*digits)).unwrap_or(enough)
     }
 }
 
@@ -124,6 +125,13 @@ mod tests {
     /// A scale from zero to `reach`.
     fn from_zero(reach: f64) -> Scale {
         Scale { low: 0.0, high: reach }
+    }
+
+    #[test]
+    fn labels_have_the_digits_they_need_and_two_figures_where_divisions_are_not_round() {
+        let of = |low, high| Scale { low, high }.decimals();
+        assert_eq!([of(-100.0, 100.0), of(0.0, 2.0), of(0.0, 10.0), of(0.0, 0.8)], [0, 2, 2, 1]);
+        assert_eq!([of(-21.739_13, 72.173_91), of(0.0, 8.888), of(0.0, 0.012_345)], [0, 1, 4]);
     }
 
     #[test]
