@@ -193,6 +193,8 @@ const ARROWS: [(&str, &[&str]); 30] = [
             "brushwork-motion-mind-wire",
             "brushwork-plant",
             "brushwork-script",
+            "brushwork-suprmotr-sim",
+            "brushwork-suprmotr-wire",
             "brushwork-tuning",
             "brushwork-tuning-bench",
             "brushwork-values",

@@ -30,6 +30,7 @@ mod settings_as_read;
 mod settings_cut;
 mod slow_lines;
 mod stop_outside;
+mod suprmotr_foreign;
 mod targets;
 mod tune_command;
 mod tuning;

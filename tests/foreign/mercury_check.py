@@ -1,0 +1,96 @@
+"""The simulated SuprMotr, driven by the Python package `basil_daq`, which knows a sister controller (PI C-863 "Mercury").
+
+Usage: mercury_check.py PORT. The boards on the line have the addresses 0 and 3, say only the letter in front of their reports, and have their echo off.
+"""
+
+import sys
+import types
+
+
+def stand_in(name, **parts):
+    """The package imports these for other instruments; the driver of this one uses none of them."""
+    module = types.ModuleType(name)
+    for part, value in parts.items():
+        setattr(module, part, value)
+    sys.modules[name] = module
+
+
+stand_in("git")
+stand_in("numpy")
+stand_in("bitarray", bitarray=object)
+
+from basil.HL.mercury import Mercury  # noqa: E402
+from basil.TL.Serial import Serial  # noqa: E402
+
+import harness  # noqa: E402
+
+PORT = sys.argv[1]
+# What friction leaves of a move at factory gains.
+NEAR = 30
+
+
+def check(name, passed, detail=""):
+    harness.report(name, passed, detail)
+
+
+def position(unit):
+    """Where the encoder of a board is, past the wire."""
+    return harness.truth()[unit]["axes"][0]["encoder_counts"]
+
+
+# As the package's own example has it: the write termination is that of reading then, so that an end of text follows every line.
+line = Serial({"name": "line", "init": {"port": PORT, "baudrate": 9600, "timeout": 0.5, "read_termination": "\x03"}})
+line.init()
+stage = Mercury(line, {"name": "stage", "init": {}})
+stage.init()
+# It asks each address twice and reads one answer: the second one is taken for the next address's.
+check("init", stage._board_numbers == [0, 1, 3, 4], stage._board_numbers)
+
+for board, unit in [(0, 0), (3, 1)]:
+    name = f"board {board}: "
+    check(name + "get_board_number", stage.get_board_number(board) == f"B:+{board:010}\r\n\x03")
+    stage.motor_on(board)
+    stage.LL(board)
+    stage.set_position(3000, board_number=board, wait=True)
+    got = stage.get_position(board)
+    check(name + "set_position", abs(got - 3000) <= NEAR, got)
+    check(name + "get_position", got == position(unit), (got, position(unit)))
+    stage.move_relative(-1000, board_number=board, wait=True)
+    got = stage.get_position(board)
+    check(name + "move_relative", abs(got - 2000) <= 2 * NEAR, got)
+    stage.set_home(board)
+    check(name + "set_home", stage.get_position(board) == 0)
+    stage.set_position(1500, board_number=board, wait=True)
+    stage.go_home(board)
+    got = stage._wait(board)
+    check(name + "go_home", abs(got) <= NEAR, got)
+    status = stage.get_channel(board)
+    # Selected and leading zeros kept, no echo; complete; limits on.
+    check(name + "get_channel", status.startswith("S:A0 ") and status.endswith(" 01 04 00 00\r\n\x03"), repr(status))
+    stage.set_position(20000, board_number=board)
+    check(name + "moves", harness.eventually(lambda: position(unit) > 6000))
+    stage.abort(board)
+    at = stage._wait(board)
+    check(name + "abort", at < 15000, at)
+    stage.motor_off(board)
+    status = stage.get_channel(board).split(" ")
+    check(name + "motor_off", int(status[1], 16) & 1 == 1, status)
+    stage.motor_on(board)
+
+# To the negative limit, 60,000 counts from where the board was switched on, and off it again as the manual homes.
+stage.find_edge(1, 0)
+edge = position(0)
+check("find_edge 1", abs(edge + 60000) <= 400, edge)
+stage._write_command("DV500", 0)
+stage.find_edge(4, 0)
+edge = position(0)
+check("find_edge 4", abs(edge + 59999) <= 25, edge)
+stage.set_home(0)
+
+# Without a board number it goes to all that it found.
+stage._write_command("DV20000")
+stage.set_position(1000)
+done = harness.eventually(lambda: abs(stage.get_position(0) - 1000) <= NEAR and abs(stage.get_position(3) - 1000) <= NEAR)
+check("all boards", done, (stage.get_position(0), stage.get_position(3)))
+
+harness.finish()

@@ -1,0 +1,43 @@
+//! A driver for a sister controller, which shares no line of code with this project, against simulated SuprMotrs on a pseudo-terminal.
+#![cfg(unix)]
+
+use brushwork_plant::server::{Endpoint, Server, ServerOptions, SimHandle};
+use brushwork_suprmotr_sim::{SuprMotr, SuprMotrBus, SuprMotrConfig};
+use brushwork_suprmotr_wire::{Address, ReportForm};
+use brushwork_tests::foreign::{self, Simulated};
+use serde_json::Value;
+
+/// Boards as the driver wants them: the letter alone in front of reports, no echo.
+fn config(number: u8) -> SuprMotrConfig {
+    let mut config = SuprMotrConfig::new(Address::new(number).expect("there are 16"));
+    config.eeprom.parameters.has_echo = false;
+    config.reply_form = ReportForm::Id;
+    config
+}
+
+struct Line(SimHandle<SuprMotrBus>);
+
+impl Simulated for Line {
+    fn truth(&mut self) -> Value {
+        serde_json::to_value(&*self.0.views()).expect("views are data")
+    }
+
+    fn act(&mut self, action: &str) -> Result<(), String> {
+        Err(format!("no action `{action}`"))
+    }
+}
+
+#[test]
+fn the_python_driver_of_a_sister_controller_drives_two_boards() {
+    if foreign::is_left_out("python") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let port = folder.path().join("line");
+    let units = [0, 3].map(|number| SuprMotr::new(config(number)).unwrap());
+    let endpoint = Endpoint::Pty { link: port.clone() };
+    let server = Server::spawn(SuprMotrBus::new(units.into()), ServerOptions::default(), &endpoint).unwrap();
+    let findings = foreign::run("mercury_check.py", &port, &[], &mut Line(server));
+    assert!(findings.failures().is_empty(), "{:#?}", findings.failures());
+    assert_eq!(findings.findings.len(), 24, "every method was looked at");
+}
