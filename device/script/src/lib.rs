@@ -11,6 +11,7 @@ pub mod disassembly;
 pub mod image;
 mod listed;
 pub mod mcl;
+pub mod mecc;
 pub mod op;
 pub mod program;
 pub mod text;

@@ -44,6 +44,12 @@ impl Machine {
         self.at = to;
     }
 
+    /// Whether an event waits for its handler and may call it with the next instruction.
+    #[must_use]
+    pub fn has_event(&self) -> bool {
+        self.events.raised != 0 && self.events.are_let_in && !self.events.in_handler
+    }
+
     pub(super) fn handler_returned(&mut self) {
         self.events.in_handler = false;
         self.serve_event();
