@@ -4,7 +4,7 @@ use brushwork_tests::rust_source::{code_lines, without_tests};
 use brushwork_tests::workspace;
 
 /// What names a family in code.
-const NAMES: [&str; 12] = [
+const NAMES: [&str; 14] = [
     "mcp",
     "Mcp",
     "MCP",
@@ -14,13 +14,23 @@ const NAMES: [&str; 12] = [
     "suprmotr",
     "SuprMotr",
     "SUPRMOTR",
+    "motorvator",
+    "Motorvator",
     "RoboClaw",
     "packet_serial",
     "PacketSerial",
 ];
 /// The folders that are a family's own, wherever they are, and a file where one is enough.
-const FOLDERS: [&str; 6] =
-    ["/mcp/", "/motion_mind/", "/suprmotr/", "/mcp.rs", "/motion_mind.rs", "/suprmotr.rs"];
+const FOLDERS: [&str; 8] = [
+    "/mcp/",
+    "/motion_mind/",
+    "/suprmotr/",
+    "/motorvator/",
+    "/mecc/",
+    "/mcp.rs",
+    "/motion_mind.rs",
+    "/suprmotr.rs",
+];
 /// The program's list of families.
 const LIST: &str = "app/src/lib.rs";
 /// Lines of code that may name one besides, benches included.

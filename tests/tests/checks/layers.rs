@@ -8,7 +8,7 @@ use brushwork_tests::rust_source::{code_lines, without_tests};
 use brushwork_tests::workspace::{self, DependencyKind, Member, Metadata};
 
 /// The arrows that ship: a crate and the crates of this workspace it may use.
-const ARROWS: [(&str, &[&str]); 30] = [
+const ARROWS: [(&str, &[&str]); 32] = [
     (
         "brushwork",
         &[
@@ -43,6 +43,8 @@ const ARROWS: [(&str, &[&str]); 30] = [
             "brushwork-motion-mind-client",
             "brushwork-motion-mind-sim",
             "brushwork-motion-mind-wire",
+            "brushwork-motorvator-sim",
+            "brushwork-motorvator-wire",
             "brushwork-plant",
             "brushwork-script",
             "brushwork-tuning",
@@ -167,6 +169,8 @@ const ARROWS: [(&str, &[&str]); 30] = [
     ("brushwork-suprmotr-sim", &["brushwork-plant", "brushwork-suprmotr-wire", "brushwork-values"]),
     ("brushwork-suprmotr-wire", &["brushwork-values"]),
     ("brushwork-suprmotr-client", &["brushwork-link", "brushwork-suprmotr-wire", "brushwork-values"]),
+    ("brushwork-motorvator-wire", &[]),
+    ("brushwork-motorvator-sim", &["brushwork-motorvator-wire", "brushwork-plant", "brushwork-script"]),
     ("brushwork-script", &[]),
     ("brushwork-values", &[]),
     ("brushwork-raster", &[]),
@@ -249,7 +253,7 @@ const IMPURE: [&str; 9] = [
 ];
 
 /// The pure parts: a source folder and the modules in it that are the named exception.
-const PURE: [(&str, &[&str]); 14] = [
+const PURE: [(&str, &[&str]); 16] = [
     ("device/canopen/src", &[]),
     ("device/values/src", &[]),
     ("device/mcp/axis/src", &[]),
@@ -261,6 +265,8 @@ const PURE: [(&str, &[&str]); 14] = [
     ("device/suprmotr/macros/src", &[]),
     ("device/suprmotr/sim/src", &[]),
     ("device/suprmotr/wire/src", &[]),
+    ("device/motorvator/wire/src", &[]),
+    ("device/motorvator/sim/src", &[]),
     ("device/plant/src", &["server"]),
     ("device/script/src", &[]),
     ("tuning/src", &[]),

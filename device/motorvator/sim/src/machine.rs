@@ -1,0 +1,137 @@
+//! The board with what it drives, as a server and the window drive it: two worlds, motors A and B in one, C and D in the other.
+
+use super::assumed::ON_BELOW_VOLTS;
+use super::rotor::{Rotor, RotorParams};
+use super::unit::Motorvator;
+use brushwork_motorvator_wire::BITS_PER_SECOND;
+use brushwork_plant::ParamsError;
+use brushwork_plant::bridge::BridgeOutput;
+use brushwork_plant::machine::{Machine, StreamIndex};
+use brushwork_plant::presets::{Preset, world_of};
+use brushwork_plant::world::{PinState, World, WorldAction, WorldView};
+use std::time::Duration;
+
+/// What the motors and the board take of each other's doing is looked at so often.
+const STEP: Duration = Duration::from_millis(1);
+/// Input pins of a world: the on/off inputs; those of the second one are not connected.
+const PINS: usize = 4;
+
+/// A simulated board with four motors.
+#[derive(Clone, Debug)]
+pub struct DrivenMotorvator {
+    board: Motorvator,
+    worlds: [World; 2],
+    /// Those of the two steppers, which take the place of two motors each.
+    rotors: [Rotor; 2],
+    has_power: bool,
+    /// The stream that stands for the one wire there is: the one that was last written to.
+    wire: StreamIndex,
+}
+
+impl DrivenMotorvator {
+    /// A board whose four motors drive the same.
+    ///
+    /// # Errors
+    /// A figure of the preset that is out of its range, by name.
+    pub fn new(board: Motorvator, preset: &Preset, seed: u64) -> Result<Self, ParamsError> {
+        let params = world_of(preset, preset, PINS);
+        let second = if seed == 0 { 0 } else { seed.wrapping_add(1).max(1) };
+        let worlds = [World::new(&params, seed)?, World::new(&params, second)?];
+        let rotors = [Rotor::new(RotorParams::default()); 2];
+        Ok(Self { board, worlds, rotors, has_power: true, wire: StreamIndex::Usb })
+    }
+
+    /// The board alone.
+    #[must_use]
+    pub fn board(&self) -> &Motorvator {
+        &self.board
+    }
+
+    /// Steps that each stepper has lost.
+    #[must_use]
+    pub fn lost_steps(&self) -> [i64; 2] {
+        let fields = self.board.steps();
+        std::array::from_fn(|index| self.rotors[index].lost(fields[index]))
+    }
+
+    fn step(&mut self, to: Duration) {
+        let passed = to.saturating_sub(self.board.now());
+        if self.has_power {
+            for pin in 0..PINS {
+                let is_on =
+                    matches!(self.worlds[0].pin(pin), PinState::Volts(volts) if volts < ON_BELOW_VOLTS);
+                self.board.set_on_off(pin + 1, is_on);
+            }
+            self.board.advance(to);
+        } else {
+            self.board.rest(to);
+        }
+        let (fields, power) = (self.board.steps(), self.board.stepper_power());
+        for ((rotor, field), power) in self.rotors.iter_mut().zip(fields).zip(power) {
+            let power = if self.has_power { power } else { 0.0 };
+            rotor.advance(field, power, passed.as_secs_f64());
+        }
+        let motors = self.board.motors();
+        let output = |percent: i32| match percent {
+            0 => BridgeOutput::Coast,
+            percent => BridgeOutput::Duty(f64::from(percent) / 100.0),
+        };
+        for (world, pair) in self.worlds.iter_mut().zip(motors.chunks_exact(2)) {
+            world.advance([output(pair[0]), output(pair[1])], passed.as_secs_f64());
+        }
+    }
+}
+
+impl Machine for DrivenMotorvator {
+    fn now(&self) -> Duration {
+        self.board.now()
+    }
+
+    fn receive(&mut self, stream: StreamIndex, bytes: &[u8]) {
+        self.wire = stream;
+        if self.has_power && self.plugged() {
+            self.board.receive(bytes);
+        }
+    }
+
+    fn advance(&mut self, to: Duration) {
+        while self.now() < to {
+            self.step((self.now() + STEP).min(to));
+        }
+    }
+
+    fn next_output_at(&self) -> Option<Duration> {
+        self.board.next_output_at()
+    }
+
+    fn take_output(&mut self, stream: StreamIndex) -> Option<Vec<u8>> {
+        if stream == self.wire { self.board.take_output() } else { None }
+    }
+
+    fn bits_per_second(&self, _: StreamIndex) -> u32 {
+        BITS_PER_SECOND
+    }
+
+    fn units(&self) -> usize {
+        self.worlds.len()
+    }
+
+    /// The board has one supply and one cable: what is done to these in the first world is done to the board.
+    fn apply(&mut self, unit: usize, action: &WorldAction) {
+        let Some(world) = self.worlds.get_mut(unit) else { return };
+        world.apply(action);
+        let has_power = self.worlds[0].powered();
+        if has_power != self.has_power {
+            self.has_power = has_power;
+            self.board.power_up();
+        }
+    }
+
+    fn views(&self) -> Vec<WorldView> {
+        self.worlds.iter().map(|world| world.view(self.now())).collect()
+    }
+
+    fn plugged(&self) -> bool {
+        self.worlds[0].plugged()
+    }
+}
