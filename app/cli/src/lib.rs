@@ -19,6 +19,7 @@ pub mod guardian;
 pub mod interrupt;
 mod list;
 pub mod mcp;
+mod mecc;
 mod messages;
 mod monitor;
 pub mod motion_mind;
@@ -28,6 +29,7 @@ pub mod output;
 mod protocol;
 mod readings;
 mod response;
+mod scripts;
 pub mod settings;
 pub mod shared_args;
 mod sim;
@@ -87,8 +89,9 @@ pub fn command_line() -> clap::Command {
     with_commands(&commands_of_families().collect::<Vec<_>>())
 }
 
+/// The commands of families, and that of the language whose boards are simulated alone.
 fn commands_of_families() -> impl Iterator<Item = Tool> {
-    family::families().iter().flat_map(|family| family.commands())
+    family::families().iter().flat_map(|family| family.commands()).chain([mecc::tool()])
 }
 
 fn with_commands(tools: &[Tool]) -> clap::Command {

@@ -162,6 +162,15 @@ messages! {
 }
 
 messages! {
+    /// What is said of MeccCode programs.
+    pub enum CliMeccMessage {
+        Lost { count: u64 } "{count} transmissions were lost, each since the one before it was still under way: send from the handler of TransmitEvent.",
+        BoardSays { words: String } "The board's command line says: {words}",
+        TraceFull { bytes: usize } "The trace ends early: it has {bytes} MB.",
+    }
+}
+
+messages! {
     /// What is said of simulated controllers.
     pub enum CliSimMessage {
         UsbHasNoBaud "A USB port has no baud rate: give --baud with --port rs232, ttl1, ttl2 or ttl3.",

@@ -11,6 +11,7 @@ mod cli_drive;
 mod cli_ends;
 mod cli_files;
 mod cli_firmware;
+mod cli_mecc;
 mod cli_profiles;
 mod cli_settings;
 mod cli_several;

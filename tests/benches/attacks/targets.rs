@@ -34,6 +34,7 @@ use brushwork_script::mcl::ast::Motion;
 use brushwork_script::mcl::format::format;
 use brushwork_script::mcl::index::Index;
 use brushwork_script::mcl::registers::RegisterId;
+use brushwork_script::mecc;
 use brushwork_script::text::Lines;
 use brushwork_script::vm::{Host, Machine};
 use brushwork_tests::workspace;
@@ -97,6 +98,34 @@ const MCL: &[&str] = &[
     "case 1\n",
     "end\n",
 ];
+const MECC: &[&str] = &[
+    "Begin Program\n",
+    "End Program\n",
+    "Declare Byte a\n",
+    "Declare DataTable t\n",
+    "Reserve 65535\n",
+    "End DataTable\n",
+    "Declare Function f(a As Word) Returns Word\n",
+    "End Function\n",
+    "Declare EventHandler h()\n",
+    "Loop\n",
+    "End Loop\n",
+    "Do\n",
+    "Until a = 1\n",
+    "If a Then ",
+    "Else\n",
+    "Select a\n",
+    "Case 1, ",
+    "Call f(",
+    "Transmit p\n",
+    "SetEvent ReceiveEvent, h\n",
+    "a = ",
+    "-",
+    "Not ",
+    "(",
+    "+a*",
+    "\"",
+];
 const CSV: &[&str] = &[
     "time_s,",
     "0.1,",
@@ -147,6 +176,12 @@ pub static TARGETS: &[Target] = &[
         samples: scripts,
         words: MCL,
         reader: |_| Box::new(|_, path| drop(disk::read(path))),
+    },
+    Target {
+        name: "MeccCode source",
+        samples: || all_of("assets/mecc"),
+        words: MECC,
+        reader: |_| Box::new(|bytes, _| board_program(bytes)),
     },
     Target {
         name: "MCL image",
@@ -327,6 +362,24 @@ fn script(bytes: &[u8]) {
     let Some(program) = compiled.program else { return };
     assert_eq!(image::decode(&image::encode(&program)).as_ref(), Ok(&program));
     Machine::new(Arc::new(program)).run(&mut Nobody, 5_000);
+}
+
+fn board_program(bytes: &[u8]) {
+    let source = text(bytes);
+    let formatted = mecc::format::format(&source);
+    assert_eq!(mecc::format::format(&formatted), formatted, "what is in order stays so");
+    let compiled = mecc::compile(&source);
+    let lines = Lines::of(&source);
+    for said in &compiled.diagnostics {
+        drop(said.render("x", &source, &lines));
+    }
+    let Some(program) = compiled.program else { return };
+    assert_eq!(image::decode(&image::encode(&program)).as_ref(), Ok(&program));
+    let mut machine = Machine::new(Arc::new(program));
+    for event in 0..16 {
+        machine.run(&mut Nobody, 300);
+        machine.raise(event);
+    }
 }
 
 fn images() -> Vec<Vec<u8>> {

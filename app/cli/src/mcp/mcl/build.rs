@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 
 use brushwork_script::diagnostic::PlacedDiagnostic;
 use brushwork_script::image;
+use brushwork_script::mcl;
 use brushwork_script::program::{Program, ROOMS, Size, limits};
 use serde::Serialize;
 
 use super::args::BuildArgs;
-use super::source::{Source, is_standard};
+use crate::scripts::{Source, is_standard};
 use crate::{Exit, NewFile, Output, OutputError, Replace, say};
 
 /// What an image file's name ends with.
@@ -90,9 +91,9 @@ pub fn run(args: &BuildArgs, out: &mut Output) -> Result<Exit, Exit> {
 
 fn build(path: &Path, args: &BuildArgs, out: &mut Output) -> Result<Built, Exit> {
     let source = Source::read(path).map_err(|error| Exit::Failed.saying(error))?;
-    let compiled = source.compile();
+    let compiled = mcl::compile(&source.text);
     if !args.json {
-        let said = source.rendered(&compiled);
+        let said = source.rendered(&compiled.diagnostics);
         if !said.is_empty() {
             say(said.trim_end());
         }
@@ -103,7 +104,7 @@ fn build(path: &Path, args: &BuildArgs, out: &mut Output) -> Result<Built, Exit>
         size: None,
         models: Vec::new(),
         stack: Stack::ASSUMED,
-        diagnostics: source.placed(&compiled),
+        diagnostics: source.placed(&compiled.diagnostics),
     };
     let Some(program) = &compiled.program else { return Ok(built) };
     let target = target(path, args)?;

@@ -5,10 +5,11 @@ use std::path::Path;
 
 use brushwork_script::disassembly::disassemble;
 use brushwork_script::image;
+use brushwork_script::mcl;
 use brushwork_script::program::Program;
 
 use super::args::DisasmArgs;
-use super::source::{Source, read_bytes};
+use crate::scripts::{Source, read_bytes};
 use crate::{Exit, Output};
 
 /// Lists every file.
@@ -29,10 +30,10 @@ fn list(path: &Path) -> Result<String, Exit> {
         return Ok(disassemble(&program, None));
     }
     let source = Source::of(path.display().to_string(), bytes);
-    let compiled = source.compile();
+    let compiled = mcl::compile(&source.text);
     match &compiled.program {
         Some(program) => Ok(disassemble(program, Some(&source.text))),
-        None => Err(Exit::ScriptWrong.saying(source.rendered(&compiled).trim_end())),
+        None => Err(Exit::ScriptWrong.saying(source.rendered(&compiled.diagnostics).trim_end())),
     }
 }
 

@@ -2,26 +2,33 @@
 
 pub mod args;
 mod build;
-mod check;
 mod disasm;
-mod fmt;
 mod rig;
 mod run;
-pub mod source;
 
-use brushwork_script::mcl::reference;
+use brushwork_script::mcl::{self, reference};
 
+use crate::scripts::{self, Language};
 use crate::{Exit, Interrupt, Output, Page};
 use args::{MclArgs, MclCommand};
+
+/// The language.
+pub const MCL: Language = Language {
+    compile: |text| {
+        let compiled = mcl::compile(text);
+        (compiled.program, compiled.diagnostics)
+    },
+    format: mcl::format::format,
+};
 
 /// Does what was asked for.
 pub fn run(args: &MclArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     match &args.command {
-        MclCommand::Check(args) => check::run(args, out),
+        MclCommand::Check(args) => scripts::check(MCL, &args.files, args.json, args.deny_warnings, out),
         MclCommand::Build(args) => build::run(args, out),
         MclCommand::Run(args) => run::run(args, out, interrupt),
         MclCommand::Disasm(args) => disasm::run(args, out),
-        MclCommand::Fmt(args) => fmt::run(args, out),
+        MclCommand::Fmt(args) => scripts::fmt(MCL, &args.files, args.check, out),
         MclCommand::Reference(args) => {
             Page::new(&reference::page(), &reference::reference()).print(args.json, out)?;
             Ok(Exit::Done)

@@ -6,13 +6,14 @@ use std::path::Path;
 use std::time::Duration;
 
 use brushwork_script::diagnostic::Severity;
+use brushwork_script::mcl;
 use brushwork_script::program::Program;
 use crossbeam_channel::{Receiver, RecvTimeoutError, TryRecvError, bounded};
 
 use super::args::RunArgs;
 use super::disasm::program_in;
 use super::rig::{Rig, Run};
-use super::source::{Source, is_standard, read_bytes};
+use crate::scripts::{Source, is_standard, read_bytes};
 use crate::{Exit, Interrupt, Output, OutputError, say};
 
 /// How far the controller goes between two looks at its output.
@@ -51,11 +52,11 @@ fn load(path: &Path, quiet: bool) -> Result<Program, Exit> {
         return Ok(program);
     }
     let source = Source::of(path.display().to_string(), bytes);
-    let mut compiled = source.compile();
+    let mut compiled = mcl::compile(&source.text);
     if quiet {
         compiled.diagnostics.retain(|said| said.severity() == Severity::Error);
     }
-    let said = source.rendered(&compiled);
+    let said = source.rendered(&compiled.diagnostics);
     if !said.is_empty() {
         say(said.trim_end());
     }

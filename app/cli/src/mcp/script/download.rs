@@ -7,10 +7,11 @@ use brushwork_mcp_client::messages::McpActMessage;
 use brushwork_mcp_client::script::{Downloaded, Origin, ScriptImage, Verified, download};
 use brushwork_script::diagnostic::Severity;
 use brushwork_script::image;
+use brushwork_script::mcl;
 use serde_json::json;
 
 use super::args::DownloadArgs;
-use crate::mcp::mcl::source::{Source, read_bytes};
+use crate::scripts::{Source, read_bytes};
 use crate::settings::controller::Controller;
 use crate::{Exit, Interrupt, Output, say};
 
@@ -41,9 +42,9 @@ pub fn image_of(file: &Path) -> Result<ScriptImage, Exit> {
 
 fn compiled(file: &Path, bytes: Vec<u8>) -> Result<Vec<u8>, Exit> {
     let source = Source::of(file.display().to_string(), bytes);
-    let mut compiled = source.compile();
+    let mut compiled = mcl::compile(&source.text);
     compiled.diagnostics.retain(|said| said.severity() == Severity::Error);
-    let said = source.rendered(&compiled);
+    let said = source.rendered(&compiled.diagnostics);
     if !said.is_empty() {
         say(said.trim_end());
     }

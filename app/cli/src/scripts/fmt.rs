@@ -1,20 +1,19 @@
-//! `brushwork mcl fmt`: scripts in one style.
+//! Scripts in one style.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use brushwork_script::mcl::format::format;
 use brushwork_script::mcl::{LONGEST_TEXT, too_long};
 use brushwork_script::text::Lines;
 
-use super::args::FmtArgs;
+use super::language::Language;
 use super::source::{Source, is_standard};
 use crate::{Exit, Output};
 
 /// Formats every file in its place.
-pub fn run(args: &FmtArgs, out: &mut Output) -> Result<Exit, Exit> {
+pub fn fmt(language: Language, paths: &[PathBuf], is_check: bool, out: &mut Output) -> Result<Exit, Exit> {
     let mut exit = Exit::Done;
-    for path in &args.files {
-        match one(path, args, out) {
+    for path in paths {
+        match one(language, path, is_check, out) {
             Ok(false) => {}
             Ok(true) => exit = if exit == Exit::Done { Exit::Different } else { exit },
             Err(failed) => exit = failed,
@@ -24,14 +23,14 @@ pub fn run(args: &FmtArgs, out: &mut Output) -> Result<Exit, Exit> {
 }
 
 /// Whether a file would change, which only matters when it is not written.
-fn one(path: &Path, args: &FmtArgs, out: &mut Output) -> Result<bool, Exit> {
+fn one(language: Language, path: &Path, is_check: bool, out: &mut Output) -> Result<bool, Exit> {
     let failed = |sentence: String| Exit::Failed.saying(sentence);
     let source = Source::read(path).map_err(|error| failed(error.to_string()))?;
     if let Some(refused) = too_long(&source.text) {
         return Err(Exit::ScriptWrong
             .saying(refused.render(&source.name, &source.text, &Lines::of(&source.text)).trim_end()));
     }
-    let formatted = format(&source.text);
+    let formatted = (language.format)(&source.text);
     if too_long(&formatted).is_some() {
         return Err(failed(format!(
             "Could not format {}: with its indentation it would be longer than the {LONGEST_TEXT} bytes that a program has at most.",
@@ -39,7 +38,7 @@ fn one(path: &Path, args: &FmtArgs, out: &mut Output) -> Result<bool, Exit> {
         )));
     }
     let changes = formatted != source.text;
-    if args.check {
+    if is_check {
         if changes {
             out.line(&source.name)?;
         }

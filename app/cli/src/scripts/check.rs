@@ -1,10 +1,11 @@
-//! `brushwork mcl check`: what is wrong with scripts.
+//! What is wrong with scripts.
 
 use brushwork_script::diagnostic::{PlacedDiagnostic, Severity};
 use brushwork_script::mcl::codes;
 use serde::Serialize;
+use std::path::PathBuf;
 
-use super::args::CheckArgs;
+use super::language::Language;
 use super::source::Source;
 use crate::{Exit, Output, say};
 
@@ -24,11 +25,17 @@ struct Report {
 }
 
 /// Checks every file, also after one that cannot be read.
-pub fn run(args: &CheckArgs, out: &mut Output) -> Result<Exit, Exit> {
+pub fn check(
+    language: Language,
+    paths: &[PathBuf],
+    json: bool,
+    deny_warnings: bool,
+    out: &mut Output,
+) -> Result<Exit, Exit> {
     let mut files = Vec::new();
     let mut page = String::new();
     let mut unread = false;
-    for path in &args.files {
+    for path in paths {
         let source = match Source::read(path) {
             Ok(source) => source,
             Err(error) => {
@@ -37,20 +44,20 @@ pub fn run(args: &CheckArgs, out: &mut Output) -> Result<Exit, Exit> {
                 continue;
             }
         };
-        let compiled = source.compile();
-        page += &source.rendered(&compiled);
-        let diagnostics = source.placed(&compiled);
+        let said = (language.compile)(&source.text).1;
+        page += &source.rendered(&said);
+        let diagnostics = source.placed(&said);
         let listed = || diagnostics.iter().filter(|said| !codes::is_count(said.code));
         let count = |severity| listed().filter(|said| said.severity == severity).count();
         let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
         files.push(Checked { file: source.name, ok: errors == 0, errors, warnings, diagnostics });
     }
-    let is_wrong = files.iter().any(|file| !file.ok || args.deny_warnings && file.warnings > 0);
+    let is_wrong = files.iter().any(|file| !file.ok || deny_warnings && file.warnings > 0);
     for file in &files {
         let (errors, warnings) = (counted(file.errors, "error"), counted(file.warnings, "warning"));
         page += &format!("{}: {errors}, {warnings}\n", file.file);
     }
-    let printed = if args.json { out.json(&Report { files }) } else { out.line(page.trim_end()) };
+    let printed = if json { out.json(&Report { files }) } else { out.line(page.trim_end()) };
     printed?;
     Ok(match (unread, is_wrong) {
         (true, _) => Exit::Failed,
@@ -60,6 +67,6 @@ pub fn run(args: &CheckArgs, out: &mut Output) -> Result<Exit, Exit> {
 }
 
 /// "1 error", "2 errors".
-pub fn counted(count: usize, what: &str) -> String {
+fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }

@@ -4,8 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use brushwork_link::bounded;
-use brushwork_script::diagnostic::PlacedDiagnostic;
-use brushwork_script::mcl::{self, Compiled};
+use brushwork_script::diagnostic::{Diagnostic, PlacedDiagnostic};
 use brushwork_script::text::Lines;
 
 /// How the bytes of a file stand for characters.
@@ -88,24 +87,16 @@ impl Source {
         }
     }
 
-    /// Compiles it.
-    pub fn compile(&self) -> Compiled {
-        mcl::compile(&self.text)
+    /// What a compiler said, as compilers print it.
+    pub fn rendered(&self, diagnostics: &[Diagnostic]) -> String {
+        let lines = Lines::of(&self.text);
+        diagnostics.iter().map(|diagnostic| diagnostic.render(&self.name, &self.text, &lines)).collect()
     }
 
-    /// What the compiler said, as compilers print it.
-    pub fn rendered(&self, compiled: &Compiled) -> String {
+    /// What a compiler said, with lines and columns.
+    pub fn placed(&self, diagnostics: &[Diagnostic]) -> Vec<PlacedDiagnostic> {
         let lines = Lines::of(&self.text);
-        let render = |diagnostic: &brushwork_script::diagnostic::Diagnostic| {
-            diagnostic.render(&self.name, &self.text, &lines)
-        };
-        compiled.diagnostics.iter().map(render).collect()
-    }
-
-    /// What the compiler said, with lines and columns.
-    pub fn placed(&self, compiled: &Compiled) -> Vec<PlacedDiagnostic> {
-        let lines = Lines::of(&self.text);
-        compiled.diagnostics.iter().map(|diagnostic| diagnostic.placed(&self.text, &lines)).collect()
+        diagnostics.iter().map(|diagnostic| diagnostic.placed(&self.text, &lines)).collect()
     }
 }
 
