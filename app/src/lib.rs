@@ -35,7 +35,7 @@ pub struct Family {
 
 /// The families that this program has. The one that is looked for first, and simulated where nothing else is named, is at the head. To add one,
 /// name it here.
-pub static FAMILIES: [Family; 2] = [
+pub static FAMILIES: [Family; 3] = [
     Family {
         driver: &brushwork_mcp_client::McpDriver,
         simulator: &brushwork_mcp::McpSimulator,
@@ -57,6 +57,17 @@ pub static FAMILIES: [Family; 2] = [
         judge: Some(brushwork_tuning_bench::motion_mind::JUDGE),
         #[cfg(feature = "bench")]
         measures: bench::motion_mind::MEASURES,
+    },
+    Family {
+        driver: &brushwork_suprmotr_client::SuprMotrDriver,
+        simulator: &brushwork_suprmotr::SuprMotrSimulator,
+        examiner: None,
+        window: &brushwork_gui::suprmotr::SuprMotr,
+        commands: &brushwork_cli::suprmotr::SuprMotrCommands,
+        #[cfg(feature = "bench")]
+        judge: None,
+        #[cfg(feature = "bench")]
+        measures: &[],
     },
 ];
 

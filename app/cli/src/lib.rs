@@ -35,6 +35,7 @@ pub mod shared_args;
 mod sim;
 mod status;
 mod stop;
+pub mod suprmotr;
 mod terminal;
 mod tool;
 pub mod tune;

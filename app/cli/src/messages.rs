@@ -173,6 +173,7 @@ messages! {
 messages! {
     /// What is said of simulated controllers.
     pub enum CliSimMessage {
+        EepromNotKept { file: String, error: String } "Could not keep the EEPROMs in {file}: {error}.",
         UsbHasNoBaud "A USB port has no baud rate: give --baud with --port rs232, ttl1, ttl2 or ttl3.",
         NotStarted { why: String } "Could not start the simulated controller: {why}.",
         NotDone { line: String, error: String } "Could not do \"{line}\": {error}.",

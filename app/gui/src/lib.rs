@@ -34,6 +34,7 @@ pub mod remember;
 pub mod run;
 pub mod screens;
 pub mod shell;
+pub mod suprmotr;
 pub mod theme;
 pub mod traffic;
 pub mod tune;

@@ -16,6 +16,7 @@ mod cli_profiles;
 mod cli_settings;
 mod cli_several;
 mod diagnosis;
+mod suprmotr;
 #[path = "../../gui/tests/gui/support/wait.rs"]
 #[allow(dead_code, reason = "each suite uses its own part of this")]
 mod wait;

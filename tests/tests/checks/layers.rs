@@ -8,7 +8,7 @@ use brushwork_tests::rust_source::{code_lines, without_tests};
 use brushwork_tests::workspace::{self, DependencyKind, Member, Metadata};
 
 /// The arrows that ship: a crate and the crates of this workspace it may use.
-const ARROWS: [(&str, &[&str]); 32] = [
+const ARROWS: [(&str, &[&str]); 33] = [
     (
         "brushwork",
         &[
@@ -25,6 +25,8 @@ const ARROWS: [(&str, &[&str]); 32] = [
             "brushwork-motion-mind-client",
             "brushwork-plant",
             "brushwork-script",
+            "brushwork-suprmotr",
+            "brushwork-suprmotr-client",
             "brushwork-tuning-bench",
             "brushwork-values",
         ],
@@ -47,6 +49,10 @@ const ARROWS: [(&str, &[&str]); 32] = [
             "brushwork-motorvator-wire",
             "brushwork-plant",
             "brushwork-script",
+            "brushwork-suprmotr",
+            "brushwork-suprmotr-client",
+            "brushwork-suprmotr-sim",
+            "brushwork-suprmotr-wire",
             "brushwork-tuning",
             "brushwork-values",
         ],
@@ -81,6 +87,8 @@ const ARROWS: [(&str, &[&str]); 32] = [
             "brushwork-plant",
             "brushwork-raster",
             "brushwork-script",
+            "brushwork-suprmotr-client",
+            "brushwork-suprmotr-wire",
             "brushwork-tuning",
             "brushwork-values",
         ],
@@ -167,6 +175,18 @@ const ARROWS: [(&str, &[&str]); 32] = [
     ("brushwork-motion-mind-sim", &["brushwork-motion-mind-wire", "brushwork-plant", "brushwork-values"]),
     ("brushwork-suprmotr-macros", &["brushwork-script", "brushwork-suprmotr-wire"]),
     ("brushwork-suprmotr-sim", &["brushwork-plant", "brushwork-suprmotr-wire", "brushwork-values"]),
+    (
+        "brushwork-suprmotr",
+        &[
+            "brushwork-family",
+            "brushwork-link",
+            "brushwork-plant",
+            "brushwork-suprmotr-client",
+            "brushwork-suprmotr-macros",
+            "brushwork-suprmotr-sim",
+            "brushwork-suprmotr-wire",
+        ],
+    ),
     ("brushwork-suprmotr-wire", &["brushwork-values"]),
     ("brushwork-suprmotr-client", &["brushwork-link", "brushwork-suprmotr-wire", "brushwork-values"]),
     ("brushwork-motorvator-wire", &[]),
@@ -197,6 +217,8 @@ const ARROWS: [(&str, &[&str]); 32] = [
             "brushwork-motion-mind-wire",
             "brushwork-plant",
             "brushwork-script",
+            "brushwork-suprmotr",
+            "brushwork-suprmotr-client",
             "brushwork-suprmotr-sim",
             "brushwork-suprmotr-wire",
             "brushwork-tuning",

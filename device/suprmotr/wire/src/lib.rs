@@ -29,6 +29,7 @@ mod describe;
 mod line;
 mod number;
 mod reader;
+mod reference;
 mod report;
 mod single;
 mod status;
@@ -45,6 +46,9 @@ pub use line::{
 };
 pub use number::Radix;
 pub use reader::{Reader, Received};
+pub use reference::{
+    BitEntry, CommandEntry, ErrorEntry, Reference, reference, reference_entry, reference_page,
+};
 pub use report::{
     BadReport, Progress, Report, ReportForm, ReportLine, echo_length, encode_report, parse_report,
 };

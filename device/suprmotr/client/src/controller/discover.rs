@@ -61,14 +61,19 @@ impl Search for SuprMotrs {
         introduce(line, &found, options.simulated, other_rate)
     }
 
-    /// At the rate of the line alone.
+    /// At the rate of the line alone, and the factory address first: all others are asked of a line that is known to have a unit.
     fn discover_gently(
         &mut self,
         line: &mut Line<'_>,
         options: &DeviceOptions,
     ) -> Result<Vec<Box<dyn Controller>>, DiscoverError> {
         let heard_before = line.exchange().statistics().bytes_in;
-        let found = find(line, options.addresses)?;
+        let mut found = Vec::new();
+        if options.addresses != Addresses::Scan
+            || Speaker::new(Address::FACTORY).probe(line, SCAN_PATIENCE)?
+        {
+            found = find(line, options.addresses)?;
+        }
         if found.is_empty() {
             return Err(nothing_there(line, options.addresses, heard_before));
         }

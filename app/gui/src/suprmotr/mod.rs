@@ -1,0 +1,6 @@
+//! SuprMotr V9 in the window: its facts, the state of its screens, and the screens.
+
+pub mod model;
+pub mod screens;
+
+pub use model::family::SuprMotr;

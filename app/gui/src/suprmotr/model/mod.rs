@@ -1,0 +1,88 @@
+//! What a SuprMotr has of its own in the window: how far its slider goes, and how far a step.
+
+use brushwork_link::device::{Drive, DriveCommand};
+use brushwork_suprmotr_wire::FURTHEST_COUNTS;
+use brushwork_values::Motor;
+
+use crate::family::Own;
+use crate::model::Connection;
+use crate::model::setpoints::Setpoints;
+
+pub mod family;
+
+/// The state of its screens.
+#[derive(Debug)]
+pub struct SuprMotrConnection {
+    /// How far the slider goes either way, counts.
+    pub span_counts: f64,
+    /// What one press of a step button moves, counts.
+    pub step_counts: f64,
+}
+
+impl Default for SuprMotrConnection {
+    fn default() -> Self {
+        Self { span_counts: 25_000.0, step_counts: 500.0 }
+    }
+}
+
+impl Own for SuprMotrConnection {}
+
+impl Connection {
+    /// What is kept of a SuprMotr.
+    pub fn suprmotr(&self) -> &SuprMotrConnection {
+        self.own()
+    }
+
+    pub fn suprmotr_mut(&mut self) -> &mut SuprMotrConnection {
+        self.own_mut()
+    }
+
+    /// Asks for a position within what the unit takes.
+    pub fn move_suprmotr(&mut self, counts: f64) {
+        let furthest = f64::from(FURTHEST_COUNTS);
+        if counts.is_finite() {
+            self.position.setpoints.set_one(Motor::M1, counts.clamp(-furthest, furthest));
+        }
+    }
+
+    /// Asks for a position so far from the one asked for last, or from where the motor is.
+    pub fn step_suprmotr(&mut self, counts: f64) {
+        let from = self.position.setpoints.values[0];
+        self.move_suprmotr(from + counts);
+    }
+}
+
+/// What the unit has to be told for a slider that stands so, if anything. Its speed on the way is a setting of its own (DV).
+fn to_send(setpoints: Setpoints) -> Option<Drive> {
+    setpoints.to_send(|_, value| {
+        Some(DriveCommand::Position {
+            position_counts: value.round() as i32,
+            speed_counts_per_s: 0,
+            accel_counts_per_s2: 0,
+            decel_counts_per_s2: 0,
+            queued: false,
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_add_up_and_stay_within_what_the_unit_takes() {
+        let mut connection = Connection::default();
+        connection.step_suprmotr(500.0);
+        connection.step_suprmotr(500.0);
+        assert_eq!(connection.position.setpoints.values[0], 1000.0);
+        connection.move_suprmotr(2e9);
+        let there = DriveCommand::Position {
+            position_counts: FURTHEST_COUNTS,
+            speed_counts_per_s: 0,
+            accel_counts_per_s2: 0,
+            decel_counts_per_s2: 0,
+            queued: false,
+        };
+        assert_eq!(to_send(connection.position.setpoints), Some(Drive::one(Motor::M1, there)));
+    }
+}

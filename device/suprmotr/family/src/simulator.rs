@@ -1,0 +1,34 @@
+//! Simulated SuprMotrs as a program serves them.
+
+use crate::sim_spec::SuprMotrSpec;
+use brushwork_family::{Simulator, SimulatorError, Started};
+use brushwork_link::{FamilyRef, Stream};
+use brushwork_plant::server::ServerOptions;
+use brushwork_suprmotr_client::{SUPRMOTR, unit_address};
+
+/// What makes them.
+#[derive(Clone, Copy, Debug)]
+pub struct SuprMotrSimulator;
+
+impl Simulator for SuprMotrSimulator {
+    fn family(&self) -> FamilyRef {
+        SUPRMOTR
+    }
+
+    fn is_asked_for(&self, text: &str) -> bool {
+        SuprMotrSpec::is_asked_for(text)
+    }
+
+    fn start(&self, text: &str) -> Result<Started, SimulatorError> {
+        let spec = SuprMotrSpec::parse(text).map_err(SimulatorError::Spec)?;
+        Ok(Started {
+            machine: Box::new(spec.bus()?),
+            addresses: spec.addresses.iter().filter_map(|address| unit_address(address.get())).collect(),
+            nodes: Vec::new(),
+            can_form: None,
+            index: ServerOptions::default().stream,
+            stream: Stream::Rs232,
+            seed: spec.seed,
+        })
+    }
+}
