@@ -89,10 +89,6 @@ impl Family for SuprMotrV9 {
         format!("V{number}")
     }
 
-    fn may_be_elsewhere(&self) -> Option<&'static str> {
-        Some("For a SuprMotr choose its family (family=suprmotr), so that its addresses and rates are asked")
-    }
-
     fn facts_key(&self) -> Option<&'static str> {
         Some("suprmotr")
     }
