@@ -16,8 +16,8 @@ pub const HELP: &str = "Exit codes:\n  \
     5  settings: a value or a profile was refused, or something did not take; firmware: the new version does not run\n  \
     6  settings diff, firmware update: there are differences\n  \
     8  tune: gains were found, with warnings to read\n  \
-    9  mcl, mecc: a script has errors\n  \
-    10  mcl run, mecc run: the script was stopped by a fault\n  \
+    9  mcl, mecc, macro: a script or macro file has errors\n  \
+    10  mcl run, mecc run: the script was stopped by a fault; macro run: a command was refused, or the motor was let go\n  \
     130  ended by Ctrl-C, SIGTERM, SIGHUP or a closed pipe, after both motors were stopped\n\n\
     `brushwork sim` ends with 0 then: that is how it is ended. A command that goes to several controllers ends with the code of the\n  \
     one that came off worst, which is the first of these that there is: 130, 3, 4, 5, 1, 2, 6, 0.";

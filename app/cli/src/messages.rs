@@ -223,3 +223,24 @@ messages! {
         NotLookedFor { addresses: String } "The stop was written to {addresses} too, where that program may not have looked for units.",
     }
 }
+
+messages! {
+    /// What is said of macro files.
+    pub enum CliMacroMessage {
+        NotRead { name: String, error: String } "Could not read {name}: {error}.",
+        NotWritten { name: String, error: String } "Could not write {name}: {error}.",
+        NotRun { name: String, error: String } "Could not run {name}: {error}.",
+        NoMacros { name: String } "{name} has no macros.",
+        NoMacro { name: String, wanted: String, names: String } "{name} has no macro {wanted}. It has {names}.",
+        NoPreset { clause: String } "{clause}.",
+        Ended { took_s: String, counts: i64 } "Ended after {took_s} s at {counts} counts.",
+        Refused { took_s: String, error: String } "The controller refused a command after {took_s} s: {error}.",
+        LetGo { took_s: String, counts: i64 } "The controller let the motor go after {took_s} s at {counts} counts: its position lagged further behind than SM allows.",
+        TimeIsUp { took_s: String, counts: i64 } "Still running after {took_s} s at {counts} counts. --for lets it run longer.",
+        KeepsNone { title: String } "{title} keeps no macros of this kind.",
+        MacroRuns "A macro is running or waiting, and a line would end it: nothing was sent. `brushwork stop` ends it.",
+        NotStored { name: String, number: u8 } "{name} was sent as macro {number} and does not read back as it was sent: the controller did not store it.",
+        NoReport { command: String } "No answer that makes sense came to {command}. Check the line and try again.",
+        TooManySteps { took_s: String, steps: usize } "Still running after {took_s} s and {steps} commands, of which no more are printed.",
+    }
+}

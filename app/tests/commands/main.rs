@@ -17,6 +17,8 @@ mod cli_settings;
 mod cli_several;
 mod diagnosis;
 mod suprmotr;
+mod suprmotr_macros;
+mod suprmotr_sim;
 #[path = "../../gui/tests/gui/support/wait.rs"]
 #[allow(dead_code, reason = "each suite uses its own part of this")]
 mod wait;

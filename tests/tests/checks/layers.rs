@@ -51,6 +51,7 @@ const ARROWS: [(&str, &[&str]); 33] = [
             "brushwork-script",
             "brushwork-suprmotr",
             "brushwork-suprmotr-client",
+            "brushwork-suprmotr-macros",
             "brushwork-suprmotr-sim",
             "brushwork-suprmotr-wire",
             "brushwork-tuning",

@@ -1,6 +1,7 @@
 //! The SuprMotr V9 on the command line: its part of the shared commands.
 
 mod decoder;
+mod macros;
 mod sim;
 mod terminal;
 
@@ -14,6 +15,7 @@ use clap::{Arg, ArgMatches, Args as _, Command};
 use crate::exit::Exit;
 use crate::family::{Examples, Family, Page, Simulated, SimulatedModel, Terminal};
 use crate::monitor::follower::Follower;
+use crate::tool::Tool;
 use brushwork_core::settings::Act;
 use decoder::Decoder;
 use sim::Switches;
@@ -25,6 +27,10 @@ pub struct SuprMotrCommands;
 impl Family for SuprMotrCommands {
     fn family(&self) -> FamilyRef {
         SUPRMOTR
+    }
+
+    fn commands(&self) -> Vec<Tool> {
+        vec![Tool::new("macro", 22, "Check, format and try macros of a SuprMotr", macros::run)]
     }
 
     fn examples(&self) -> Examples {
