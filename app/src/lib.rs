@@ -4,6 +4,10 @@
 
 #[cfg(feature = "bench")]
 mod bench;
+#[cfg(feature = "bench")]
+mod mcp;
+#[cfg(feature = "bench")]
+mod motion_mind;
 
 use brushwork_cli::family::Family as Commands;
 use brushwork_core::guardian;
@@ -45,7 +49,7 @@ pub static FAMILIES: [Family; 3] = [
         #[cfg(feature = "bench")]
         judge: Some(brushwork_tuning_bench::mcp::JUDGE),
         #[cfg(feature = "bench")]
-        measures: bench::mcp::MEASURES,
+        measures: mcp::MEASURES,
     },
     Family {
         driver: &brushwork_motion_mind_client::MotionMindDriver,
@@ -56,7 +60,7 @@ pub static FAMILIES: [Family; 3] = [
         #[cfg(feature = "bench")]
         judge: Some(brushwork_tuning_bench::motion_mind::JUDGE),
         #[cfg(feature = "bench")]
-        measures: bench::motion_mind::MEASURES,
+        measures: motion_mind::MEASURES,
     },
     Family {
         driver: &brushwork_suprmotr_client::SuprMotrDriver,

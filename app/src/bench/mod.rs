@@ -4,19 +4,17 @@
 //! the machine and the build they were taken on: use a release build on a quiet machine.
 
 pub mod arguments;
-mod at_motor;
-mod editor;
-mod figure;
-mod graph;
-mod headless;
-pub mod mcp;
-pub mod motion_mind;
-mod rig;
-mod spread;
-mod tap;
-mod tuning;
-mod watched;
-mod window;
+pub mod at_motor;
+pub mod editor;
+pub mod figure;
+pub mod graph;
+pub mod headless;
+pub mod rig;
+pub mod spread;
+pub mod tap;
+pub mod tuning;
+pub mod watched;
+pub mod window;
 
 use std::time::Duration;
 

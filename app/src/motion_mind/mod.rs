@@ -8,10 +8,10 @@ use brushwork_motion_mind_client::MOTION_MIND;
 use brushwork_plant::server::ServerOptions;
 use brushwork_values::Motor;
 
-use super::Measure;
-use super::arguments::BenchArg;
-use super::at_motor::{self, Case};
-use super::rig::Far;
+use crate::bench::Measure;
+use crate::bench::arguments::BenchArg;
+use crate::bench::at_motor::{self, Case};
+use crate::bench::rig::Far;
 
 /// What is measured, and what measures it.
 pub const MEASURES: &[Measure] = &[(BenchArg::Stop, |effort, interrupt| {

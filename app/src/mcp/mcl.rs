@@ -9,11 +9,11 @@ use brushwork_script::mcl::registers::RegisterId;
 use brushwork_script::mcl::{self, ast::Motion};
 use brushwork_script::vm::{Host, Machine, State};
 
-use super::super::Effort;
-use super::super::editor;
-use super::super::figure::{Figure, Target};
-use super::super::spread::median;
-use super::super::window::processor_time;
+use crate::bench::Effort;
+use crate::bench::editor;
+use crate::bench::figure::{Figure, Target};
+use crate::bench::spread::median;
+use crate::bench::window::processor_time;
 
 /// Times the speed of a controller's script: as the simulator that runs it is held to, see `sim`.
 const REQUIRED: f64 = 500.0;

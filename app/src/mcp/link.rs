@@ -6,12 +6,12 @@ use brushwork_link::device::Event;
 use brushwork_mcp_sim::controller::turnaround;
 use brushwork_mcp_wire::packet_serial::Generation;
 
-use super::super::Effort;
-use super::super::figure::{Figure, Target};
-use super::super::rig::Rig;
-use super::super::spread::{median, range};
-use super::super::tap::Noted;
 use super::{SERVED, far};
+use crate::bench::Effort;
+use crate::bench::figure::{Figure, Target};
+use crate::bench::rig::Rig;
+use crate::bench::spread::{median, range};
+use crate::bench::tap::Noted;
 use brushwork_cli::interrupt::Interrupt;
 
 /// Bits a byte takes on the wire: start, eight data bits, stop.

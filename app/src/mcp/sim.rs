@@ -10,9 +10,9 @@ use brushwork_plant::server::measure_speed;
 use brushwork_script::{image, mcl};
 use brushwork_values::Motor;
 
-use super::super::Effort;
-use super::super::figure::{Figure, Target};
-use super::super::spread::median;
+use crate::bench::Effort;
+use crate::bench::figure::{Figure, Target};
+use crate::bench::spread::median;
 
 /// Times real time.
 const REQUIRED: f64 = 500.0;

@@ -13,9 +13,9 @@ use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::packet_serial::{Address, Generation};
 use brushwork_plant::machine::StreamIndex;
 
-use super::Measure;
-use super::arguments::BenchArg;
-use super::rig::Far;
+use crate::bench::Measure;
+use crate::bench::arguments::BenchArg;
+use crate::bench::rig::Far;
 
 /// The stream that is served: one whose rate counts.
 const SERVED: StreamIndex = StreamIndex::Uart1;
