@@ -76,9 +76,18 @@ fn refusals(link: &VirtualLink<SimulatedLine>) -> Vec<String> {
 
 /// A gentle motion that the unit takes as it comes from the factory.
 fn gentle(unit: &Identity) -> Drive {
-    let command = match unit.capabilities().duty {
-        true => DriveCommand::duty(0.3),
-        false => DriveCommand::Speed { speed_counts_per_s: 500, accel_counts_per_s2: None },
+    let takes = unit.capabilities();
+    let command = match (takes.duty, takes.speed) {
+        (true, _) => DriveCommand::duty(0.3),
+        (false, true) => DriveCommand::Speed { speed_counts_per_s: 500, accel_counts_per_s2: None },
+        // So far that it is on its way whenever the test looks.
+        (false, false) => DriveCommand::Position {
+            position_counts: 60_000,
+            speed_counts_per_s: 0,
+            accel_counts_per_s2: 0,
+            decel_counts_per_s2: 0,
+            queued: false,
+        },
     };
     Drive::one(Motor::M1, command)
 }

@@ -40,6 +40,9 @@ pub fn screen_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 
 /// The screens as a family has them that draws none of its own.
 fn shared_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
+    if !model.front.screens().contains(&model.screen) {
+        return nothing_ui(ui, "This controller has no such screen. Choose another at the left.");
+    }
     match model.screen {
         Screen::DeviceStatus => status::status_ui(ui, model, commands),
         Screen::GeneralSettings => general::general_ui(ui, model, commands),
