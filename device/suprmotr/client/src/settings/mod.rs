@@ -39,9 +39,11 @@ impl FamilySettings for SuprMotrSettings {
     }
 
     fn read_phrase(&self, command: u8) -> String {
-        let name = Mnemonic::from_number(command).map_or("", Mnemonic::name);
         let title = self.read_title(command);
-        if name.is_empty() { title.to_owned() } else { format!("{title} ({name})") }
+        match Mnemonic::from_number(command) {
+            Some(mnemonic) => format!("read with {} ({title})", mnemonic.name()),
+            None => format!("read the {title}"),
+        }
     }
 
     fn arguments(&self, planned: &Planned<'_>) -> Result<Vec<Argument>, Message> {
