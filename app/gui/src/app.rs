@@ -390,6 +390,7 @@ impl App {
     fn show(&mut self, screen: Screen) {
         // Whoever goes there wants to write.
         self.model.mcl.wants_focus |= screen == Screen::MclEditor;
+        self.model.front.shows_start = false;
         if screen == self.model.screen {
             return;
         }

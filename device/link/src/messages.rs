@@ -251,6 +251,7 @@ messages! {
         ArmFirst "Arm the motors on this screen first",
         TrySimulated "Try it on a simulated controller",
         DoWithout "Do without it, or check the firmware's version",
+        WriteToKnow "Write it, and it is known while this program is connected",
         CheckValue "Check the value and the state of the controller",
         AskOtherwise "Ask for something else",
         StayInRange "Use a value in range",

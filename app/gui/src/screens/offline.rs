@@ -37,7 +37,7 @@ fn has_record(front: &Connection, screen: Screen) -> bool {
     }
 }
 
-/// What became of the link, what the controller does without it, and the way back. It is as high whatever it says.
+/// What became of the link, what the controller does without it, and the way back.
 fn band_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let palette = Palette::of(ui);
     let now_s = ui.input(|input| input.time);
@@ -46,6 +46,7 @@ fn band_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         Some(lost) => {
             let since_s = now_s - *lost.noticed_s.get_or_insert(now_s);
             let ago = ago_text(since_s);
+            ui.ctx().request_repaint_after(std::time::Duration::from_secs(1));
             (IndicatorState::Error, palette.error, format!("Link lost {ago}. {}", lost.text))
         }
         None => (IndicatorState::Unknown, palette.line, not_connected_headline(front)),
@@ -74,7 +75,6 @@ fn band_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             );
         });
     });
-    ui.ctx().request_repaint_after(std::time::Duration::from_secs(1));
 }
 
 fn not_connected_headline(front: &Connection) -> String {

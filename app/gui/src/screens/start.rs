@@ -63,7 +63,7 @@ fn ports_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 }
 
 /// What keeps a port from appearing or opening on a system, each with what to type where there is something.
-fn in_the_way(system: &str, ports: &[PortInfo]) -> Vec<(&'static str, Option<String>)> {
+fn in_the_way(system: &str, group: &str) -> Vec<(&'static str, Option<String>)> {
     let cable = (
         "Use a cable that carries data, and switch the controller's own supply on: USB alone does not power every board.",
         None,
@@ -71,8 +71,6 @@ fn in_the_way(system: &str, ports: &[PortInfo]) -> Vec<(&'static str, Option<Str
     let mut advice = vec![cable];
     match system {
         "linux" => {
-            let group = ports.iter().find_map(|port| brushwork_link::transport::owning_group(&port.name));
-            let group = group.unwrap_or_else(|| "dialout".to_owned());
             advice.extend([
                 (
                     "Your user needs the right to open serial ports. Run this, then log out and in again:",
@@ -110,7 +108,15 @@ fn in_the_way(system: &str, ports: &[PortInfo]) -> Vec<(&'static str, Option<Str
 }
 
 fn in_the_way_ui(ui: &mut Ui, ports: &[PortInfo]) {
-    for (text, typed) in in_the_way(std::env::consts::OS, ports) {
+    // The system is asked once for each list of ports, and not in every frame.
+    let key = ui.scope_id().with(ports.iter().map(|port| port.name.as_str()).collect::<Vec<_>>());
+    let group = ui.data(|data| data.get_temp::<String>(key)).unwrap_or_else(|| {
+        let owning = ports.iter().find_map(|port| brushwork_link::transport::owning_group(&port.name));
+        let group = owning.unwrap_or_else(|| "dialout".to_owned());
+        ui.data_mut(|data| data.insert_temp(key, group.clone()));
+        group
+    });
+    for (text, typed) in in_the_way(std::env::consts::OS, &group) {
         ui.label(text);
         let Some(typed) = typed else { continue };
         ui.horizontal(|ui| {
@@ -193,12 +199,12 @@ mod tests {
     #[test]
     fn each_system_has_its_own_advice_and_linux_the_very_commands() {
         let typed = |system| -> Vec<String> {
-            in_the_way(system, &[]).into_iter().filter_map(|(_, typed)| typed).collect()
+            in_the_way(system, "dialout").into_iter().filter_map(|(_, typed)| typed).collect()
         };
         assert_eq!(typed("linux")[0], "sudo usermod -aG dialout $USER");
         assert!(typed("linux").iter().any(|typed| typed.contains("ModemManager")));
         assert_eq!(typed("windows"), ["devmgmt.msc"]);
         assert_eq!(typed("macos"), ["ls /dev/cu.*"]);
-        assert_eq!(in_the_way("plan9", &[]).len(), 2, "what is true everywhere");
+        assert_eq!(in_the_way("plan9", "").len(), 2, "what is true everywhere");
     }
 }

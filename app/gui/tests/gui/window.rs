@@ -49,6 +49,9 @@ fn the_start_page_opens_a_simulated_controller_a_port_and_what_was_open_before()
     bench.pass_ms(500);
     bench.press("Start page");
     assert!(bench.sees("sim:mcp266"), "what was open before");
+    bench.press("Device Status");
+    assert!(bench.sees("EVENT HISTORY"), "a screen of the list leads back to what was");
+    bench.press("Start page");
     bench.plug_in_port("/dev/ttyUSB3");
     bench.pass_ms(200);
     bench.press("Connect to /dev/ttyUSB3");

@@ -90,6 +90,12 @@ pub enum ExchangeError {
         /// The command's title.
         command: String,
     },
+    /// The unit has it and reports it by no command.
+    #[error("{what}")]
+    Untold {
+        /// What is known of it, as a clause.
+        what: Message,
+    },
     /// The controller understood and refused.
     #[error("the controller refused: {what}")]
     Refused {
@@ -151,7 +157,8 @@ impl ExchangeError {
             | Self::BadCrc { .. }
             | Self::BadAcknowledgement { .. }
             | Self::Malformed { .. }
-            | Self::Absent { .. } => true,
+            | Self::Absent { .. }
+            | Self::Untold { .. } => true,
             Self::Refused { is_absent, .. } => *is_absent,
             Self::MayHaveRun { cause } => cause.is_unusable_answer(),
             _ => false,
@@ -206,6 +213,7 @@ impl ExchangeError {
             Self::NotArmed { .. } => RemedyMessage::ArmFirst,
             Self::Unproven { .. } => RemedyMessage::TrySimulated,
             Self::Unsupported { .. } | Self::Absent { .. } => RemedyMessage::DoWithout,
+            Self::Untold { .. } => RemedyMessage::WriteToKnow,
             Self::Refused { .. } => RemedyMessage::CheckValue,
             Self::Impossible { .. } => RemedyMessage::AskOtherwise,
             Self::Encode { .. } => RemedyMessage::StayInRange,

@@ -127,6 +127,7 @@ pub fn went_out(error: &ExchangeError) -> bool {
             | ExchangeError::Unproven { .. }
             | ExchangeError::Unsupported { .. }
             | ExchangeError::Absent { .. }
+            | ExchangeError::Untold { .. }
             | ExchangeError::Encode { .. }
     )
 }
@@ -243,7 +244,12 @@ impl Failures {
     fn no_reply(&mut self, command: u8, row: &Row, error: &ExchangeError) {
         let failure = || error.failure(self.read(command), &self.on);
         let failure = if self.knows(command) { None } else { Some(failure()) };
-        self.add(command, row, failure, matches!(error, ExchangeError::Absent { .. }));
+        self.add(
+            command,
+            row,
+            failure,
+            matches!(error, ExchangeError::Absent { .. } | ExchangeError::Untold { .. }),
+        );
     }
 
     fn incomplete(&mut self, command: u8, row: &Row) {

@@ -57,6 +57,7 @@ messages! {
         BytesCame { count: u64, asked: Message } "{count} bytes came, but no SuprMotr, from {asked}",
         AllAddresses "addresses 0 to F",
         Address { address: char } "the address {address}",
+        SmUntold "a SuprMotr takes it with SM and reports it by no command",
         OneMotor "it has one axis, motor 1",
         SecondMotor "a SuprMotr has one motor",
         NoEStop "a SuprMotr has no emergency stop that software could reset",

@@ -195,7 +195,7 @@ impl SuprMotr {
     fn following_error(&mut self, line: &mut Line<'_>) -> Result<Answer, ExchangeError> {
         let (_, span) = self.speaker.status(line)?;
         let Some(counts) = self.following_error else {
-            return Err(ExchangeError::Absent { command: Mnemonic::SM.row().title.to_owned() });
+            return Err(ExchangeError::Untold { what: SuprMotrCauseMessage::SmUntold.into() });
         };
         Ok(Answer { values: Values::new(&FOLLOWING_ERROR_FIELD, vec![Value::Int(counts.into())]), span })
     }
