@@ -7,6 +7,7 @@
 pub mod examine;
 pub mod messages;
 pub mod simulator;
+pub mod spec;
 pub mod tuned;
 
 pub use examine::{Examination, Examiner};

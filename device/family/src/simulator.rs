@@ -6,6 +6,7 @@ use brushwork_canopen::adapter::Form;
 use brushwork_link::{FamilyRef, Stream, UnitAddress};
 use brushwork_plant::ParamsError;
 use brushwork_plant::machine::{Machine, StreamIndex};
+use brushwork_plant::server::ServerOptions;
 use brushwork_script::debug::{Request, View, Wanted};
 use std::sync::{PoisonError, RwLock};
 
@@ -25,6 +26,22 @@ pub struct Started {
     pub stream: Stream,
     /// Seed of noise and faults.
     pub seed: u64,
+}
+
+impl Started {
+    /// Units of a family that has one serial line and no other.
+    #[must_use]
+    pub fn on_a_line(machine: Box<dyn Machine>, addresses: Vec<UnitAddress>, seed: u64) -> Self {
+        Self {
+            machine,
+            addresses,
+            nodes: Vec::new(),
+            can_form: None,
+            index: ServerOptions::default().stream,
+            stream: Stream::Rs232,
+            seed,
+        }
+    }
 }
 
 /// Why units cannot be made.

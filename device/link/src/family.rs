@@ -21,10 +21,16 @@ pub trait Family: Send + Sync {
     fn models(&self) -> &'static [Model];
 
     /// The model with this key or printed name, whatever its case; there may be models beyond [`Family::models`], for boards that no manual lists.
-    fn model(&self, name: &str) -> Option<&'static Model>;
+    fn model(&self, name: &str) -> Option<&'static Model> {
+        let is_it = |model: &&Model| [model.key, model.name].iter().any(|own| own.eq_ignore_ascii_case(name));
+        self.models().iter().find(is_it)
+    }
 
-    /// The model of a unit that calls itself so.
-    fn identify(&self, version_text: &str) -> Option<&'static Model>;
+    /// The model of a unit that calls itself so: that whose printed name the text begins with.
+    fn identify(&self, version_text: &str) -> Option<&'static Model> {
+        let text = version_text.trim().to_ascii_lowercase();
+        self.models().iter().find(|model| text.starts_with(&model.name.to_ascii_lowercase()))
+    }
 
     /// Whether a unit can have this address.
     fn has_address(&self, number: u8) -> bool;

@@ -42,5 +42,5 @@ pub use request::{Request, RequestRefused};
 pub use risk::RiskAccepted;
 pub use run::{DeviceLoop, DeviceThread, Step};
 pub use signals::{Guard, MOTION_LIFE, OutsideAnswer};
-pub use status::{Indicator, PlaceState, StatusPlace, StatusReport};
+pub use status::{Indicator, PlaceState, StatusPlace, StatusReport, status_row};
 pub use stop::{StopBytes, StopReport, UnitStop};

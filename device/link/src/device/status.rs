@@ -57,6 +57,22 @@ pub struct StatusPlace {
     pub state: PlaceState,
 }
 
+/// The status row of a family whose places are its indicators, in their order.
+#[must_use]
+pub fn status_row(report: Option<&StatusReport>, indicators: &[Indicator]) -> Vec<StatusPlace> {
+    let state = |indicator: &Indicator| match report {
+        None => PlaceState::Unknown,
+        Some(report) if report.word & indicator.mask == 0 => PlaceState::Clear,
+        Some(_) => PlaceState::Active(indicator.severity),
+    };
+    let place = |indicator: &Indicator| StatusPlace {
+        short: indicator.short,
+        title: indicator.title,
+        state: state(indicator),
+    };
+    indicators.iter().map(place).collect()
+}
+
 /// A running time that is smaller than the one before has begun anew, unless the one before was this close to its end.
 const WRAP_MARGIN_TICKS: u32 = 1 << 24;
 

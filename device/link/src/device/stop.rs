@@ -92,6 +92,22 @@ pub struct UnitStop {
     pub failures: Vec<Failure>,
 }
 
+impl UnitStop {
+    /// A stop of which nothing is known yet.
+    #[must_use]
+    pub const fn new(address: u8) -> Self {
+        Self {
+            address,
+            confirmed: false,
+            script_ended: None,
+            buffers_empty: None,
+            still_driven_by: Vec::new(),
+            loop_left_off: false,
+            failures: Vec::new(),
+        }
+    }
+}
+
 impl StopReport {
     /// Time from the request to the bytes on the wire.
     #[must_use]

@@ -45,7 +45,7 @@ pub use profile::{
 };
 pub use read::{ReadFailure, ReadReport, is_final, is_there, read_all, read_some, went_out};
 pub use row::{Access, Bits, Bound, Carrier, Group, Instance, Place, Range, Row, Sink, Source};
-pub use save_report::{SaveReport, SaveVerdict, unknown};
+pub use save_report::{SaveReport, SaveVerdict, stored, unknown};
 pub use step::{Refusal, Stage, Step, WriteOptions};
 pub use subject::Subject;
 pub use table::SettingsTable;

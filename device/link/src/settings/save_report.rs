@@ -2,8 +2,9 @@
 
 use serde::Serialize;
 
-use super::difference::Difference;
+use super::difference::{Difference, diff};
 use super::image::SettingsImage;
+use super::read::ReadReport;
 use super::write_report::WriteReport;
 use crate::failure::Failure;
 use crate::messages::{SaveMessage, settings};
@@ -65,6 +66,22 @@ impl SaveReport {
             None => SaveMessage::AsInEeprom,
         }
         .into()
+    }
+}
+
+/// A save that a controller acknowledged and whose EEPROM cannot be read: what reads otherwise than before was not stored.
+#[must_use]
+pub fn stored(before: &ReadReport, after: &ReadReport) -> SaveReport {
+    let is_known = |difference: &Difference| difference.left.is_some() && difference.right.is_some();
+    let differences: Vec<Difference> =
+        diff(&before.table, &before.image, &after.image).into_iter().filter(is_known).collect();
+    let is_stored = differences.is_empty();
+    SaveReport {
+        verdict: if is_stored { SaveVerdict::Stored } else { SaveVerdict::NotSaved },
+        differences,
+        eeprom: is_stored.then(|| before.image.clone()),
+        put_back: None,
+        failure: None,
     }
 }
 

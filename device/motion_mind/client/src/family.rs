@@ -47,17 +47,6 @@ impl Family for MotionMind3 {
         &MODELS
     }
 
-    fn model(&self, name: &str) -> Option<&'static Model> {
-        MODELS
-            .iter()
-            .find(|model| [model.key, model.name].iter().any(|known| known.eq_ignore_ascii_case(name)))
-    }
-
-    fn identify(&self, version_text: &str) -> Option<&'static Model> {
-        let begins = version_text.trim().to_ascii_lowercase().starts_with(&NAME.to_ascii_lowercase());
-        MODELS.first().filter(|_| begins)
-    }
-
     fn has_address(&self, number: u8) -> bool {
         Address::unit(number).is_some()
     }

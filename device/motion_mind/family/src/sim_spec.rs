@@ -3,10 +3,13 @@
 //! `motion-mind-3,mode=4,protocol=ascii,address=1,address=2,preset=NAME,baud=9600,encoder=1x,revision=5,seed=N`; `?` and `&` may stand for
 //! the commas, and one address option may name several units: `motion-mind-3?mode=4&address=1,2`.
 
+use brushwork_family::spec::{self, seed};
 use brushwork_motion_mind_sim::{EncoderDecode, MotionMind, MotionMindBus, MotionMindConfig, assumed, pin};
 use brushwork_motion_mind_wire::{Address, Mode, Protocol};
 use brushwork_plant::ParamsError;
 use brushwork_plant::presets;
+
+pub use brushwork_family::spec::preset;
 
 /// The name of the model.
 pub const MODEL: &str = "motion-mind-3";
@@ -51,7 +54,7 @@ impl MotionMindSpec {
     /// Whether the text behind `sim:` asks for Motion Minds.
     #[must_use]
     pub fn is_asked_for(text: &str) -> bool {
-        text.split(SEPARATORS).next().is_some_and(|model| model.trim().eq_ignore_ascii_case(MODEL))
+        spec::asks_for(text, MODEL)
     }
 
     /// Reads the text behind `sim:`.
@@ -60,16 +63,8 @@ impl MotionMindSpec {
     /// A clause that names the part at fault and what may stand there.
     pub fn parse(text: &str) -> Result<Self, String> {
         let mut spec = Self { addresses: Vec::new(), ..Self::default() };
-        let mut in_addresses = false;
-        for part in text.split(SEPARATORS).map(str::trim).skip(1).filter(|part| !part.is_empty()) {
-            match part.split_once('=') {
-                Some((key, value)) => {
-                    in_addresses = key.trim() == "address";
-                    spec.set(key.trim(), value.trim())?;
-                }
-                None if in_addresses => spec.set("address", part)?,
-                None => return Err(no_option(part)),
-            }
+        for (key, value) in spec::options(text, &["address"]).map_err(no_option)? {
+            spec.set(key, value)?;
         }
         if spec.addresses.is_empty() {
             spec.addresses.push(Address::FACTORY);
@@ -106,10 +101,7 @@ impl MotionMindSpec {
             }
             "address" => self.add_address(value)?,
             "preset" => self.preset = Some(preset(value)?),
-            "seed" => {
-                self.seed =
-                    value.parse().map_err(|_| format!("\"{value}\" is no seed. Use a whole number"))?;
-            }
+            "seed" => self.seed = seed(value)?,
             _ => return Err(no_option(key)),
         }
         Ok(())
@@ -119,14 +111,7 @@ impl MotionMindSpec {
         let address = text.parse().ok().and_then(Address::unit).filter(|address| address.get() > 0);
         let address =
             address.ok_or_else(|| format!("\"{text}\" is no address of a Motion Mind 3. Use 1 to 98"))?;
-        if self.addresses.contains(&address) {
-            return Err(format!(
-                "two simulated controllers are given the address {}; units on one line need different ones",
-                address.get()
-            ));
-        }
-        self.addresses.push(address);
-        Ok(())
+        spec::add(&mut self.addresses, address, address.get())
     }
 
     /// The units on one wire.
@@ -152,19 +137,6 @@ impl MotionMindSpec {
             config.world = presets::world_of(preset, preset, pin::COUNT);
         }
         config
-    }
-}
-
-const SEPARATORS: [char; 3] = [',', '?', '&'];
-
-/// The name of a preset, if there is one of that name.
-///
-/// # Errors
-/// A clause with all names.
-pub fn preset(name: &str) -> Result<String, String> {
-    match presets::lookup(name) {
-        Some(preset) => Ok(preset.key.clone()),
-        None => Err(format!("\"{name}\" is no motor preset. There are {}", presets::keys().join(", "))),
     }
 }
 

@@ -2,9 +2,8 @@
 
 use crate::sim_spec::MotionMindSpec;
 use brushwork_family::{Simulator, SimulatorError, Started};
-use brushwork_link::{FamilyRef, Stream};
+use brushwork_link::FamilyRef;
 use brushwork_motion_mind_client::{MOTION_MIND, unit_address};
-use brushwork_plant::server::ServerOptions;
 
 /// What makes them.
 #[derive(Clone, Copy, Debug)]
@@ -21,14 +20,7 @@ impl Simulator for MotionMindSimulator {
 
     fn start(&self, text: &str) -> Result<Started, SimulatorError> {
         let spec = MotionMindSpec::parse(text).map_err(SimulatorError::Spec)?;
-        Ok(Started {
-            machine: Box::new(spec.bus()?),
-            addresses: spec.addresses.iter().filter_map(|address| unit_address(address.get())).collect(),
-            nodes: Vec::new(),
-            can_form: None,
-            index: ServerOptions::default().stream,
-            stream: Stream::Rs232,
-            seed: spec.seed,
-        })
+        let addresses = spec.addresses.iter().filter_map(|address| unit_address(address.get())).collect();
+        Ok(Started::on_a_line(Box::new(spec.bus()?), addresses, spec.seed))
     }
 }

@@ -3,8 +3,11 @@
 //! `suprmotr-v9,units=0,3,F,reply-form=id,echo=off,addressed=yes,baud=9600,preset=NAME,seed=N`; `?` and `&` may stand for the commas, and `address`
 //! for `units`.
 
+use brushwork_family::spec::{self, seed};
 use brushwork_plant::ParamsError;
 use brushwork_plant::presets;
+
+pub use brushwork_family::spec::preset;
 use brushwork_suprmotr_sim::{Eeprom, SuprMotr, SuprMotrBus, SuprMotrConfig, world_of};
 use brushwork_suprmotr_wire::{Address, ReportForm};
 
@@ -54,7 +57,7 @@ impl SuprMotrSpec {
     /// Whether the text behind `sim:` asks for SuprMotrs.
     #[must_use]
     pub fn is_asked_for(text: &str) -> bool {
-        text.split(SEPARATORS).next().is_some_and(|model| model.trim().eq_ignore_ascii_case(MODEL))
+        spec::asks_for(text, MODEL)
     }
 
     /// Reads the text behind `sim:`.
@@ -63,16 +66,8 @@ impl SuprMotrSpec {
     /// A clause that names the part at fault and what may stand there.
     pub fn parse(text: &str) -> Result<Self, String> {
         let mut spec = Self { addresses: Vec::new(), ..Self::default() };
-        let mut in_addresses = false;
-        for part in text.split(SEPARATORS).map(str::trim).skip(1).filter(|part| !part.is_empty()) {
-            match part.split_once('=') {
-                Some((key, value)) => {
-                    in_addresses = ["address", "units"].contains(&key.trim());
-                    spec.set(key.trim(), value.trim())?;
-                }
-                None if in_addresses => spec.add_address(part)?,
-                None => return Err(no_option(part)),
-            }
+        for (key, value) in spec::options(text, &["address", "units"]).map_err(no_option)? {
+            spec.set(key, value)?;
         }
         if spec.addresses.is_empty() {
             spec.addresses.push(Address::FACTORY);
@@ -88,10 +83,7 @@ impl SuprMotrSpec {
             "addressed" => self.is_addressed = switch(key, value, ["yes", "no"])?,
             "baud" => self.rate_bps = value.parse().ok().and_then(rate).ok_or_else(|| no_rate(value))?,
             "preset" => self.preset = Some(preset(value)?),
-            "seed" => {
-                self.seed =
-                    value.parse().map_err(|_| format!("\"{value}\" is no seed. Use a whole number"))?;
-            }
+            "seed" => self.seed = seed(value)?,
             _ => return Err(no_option(key)),
         }
         Ok(())
@@ -108,14 +100,7 @@ impl SuprMotrSpec {
         };
         let address = address
             .ok_or_else(|| format!("\"{text}\" is no address of a SuprMotr. Use 0 to 9 and A to F"))?;
-        if self.addresses.contains(&address) {
-            return Err(format!(
-                "two simulated controllers are given the address {}; units on one line need different ones",
-                char::from(address.character())
-            ));
-        }
-        self.addresses.push(address);
-        Ok(())
+        spec::add(&mut self.addresses, address, char::from(address.character()))
     }
 
     /// The boards on one wire.
@@ -146,19 +131,6 @@ impl SuprMotrSpec {
             config.world = world_of(&preset.axis);
         }
         config
-    }
-}
-
-const SEPARATORS: [char; 3] = [',', '?', '&'];
-
-/// The name of a preset, if there is one of that name.
-///
-/// # Errors
-/// A clause with all names.
-pub fn preset(name: &str) -> Result<String, String> {
-    match presets::lookup(name) {
-        Some(preset) => Ok(preset.key.clone()),
-        None => Err(format!("\"{name}\" is no motor preset. There are {}", presets::keys().join(", "))),
     }
 }
 

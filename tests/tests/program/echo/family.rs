@@ -345,15 +345,7 @@ impl Controller for EchoUnit {
 
     fn confirm_stop(&mut self, line: &mut Line<'_>, _scripts: bool) -> Result<UnitStop, ExchangeError> {
         ask(line, "V 0")?;
-        Ok(UnitStop {
-            address: 1,
-            confirmed: true,
-            script_ended: None,
-            buffers_empty: None,
-            still_driven_by: Vec::new(),
-            loop_left_off: false,
-            failures: Vec::new(),
-        })
+        Ok(UnitStop { confirmed: true, ..UnitStop::new(1) })
     }
 
     fn other_drivers(&mut self, _line: &mut Line<'_>) -> Result<Vec<Message>, ExchangeError> {

@@ -61,15 +61,7 @@ pub fn confirm(
     on: &str,
 ) -> Result<UnitStop, ExchangeError> {
     let stand = |line: &mut Line<'_>| ask_surely(speaker, line, reads, commands::DUTY_ACCEL_BOTH, &DUTY_ZERO);
-    let mut stop = UnitStop {
-        address: speaker.id(),
-        confirmed: false,
-        script_ended: None,
-        buffers_empty: None,
-        still_driven_by: Vec::new(),
-        loop_left_off: false,
-        failures: Vec::new(),
-    };
+    let mut stop = UnitStop::new(speaker.id());
     if let Err(error) = stand(line) {
         pass_on(&error)?;
         stop.failures.push(Failure::new(ActMessage::Stop, on, error.message(), McpRemedyMessage::CutPower));

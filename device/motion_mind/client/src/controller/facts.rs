@@ -2,11 +2,11 @@
 
 use super::channels::CHANNELS;
 use super::driving::{objection, preview};
-use super::indicators::status_row;
+use super::indicators::INDICATORS;
 use super::traffic::describe_sent;
 use brushwork_link::Message;
 use brushwork_link::device::{
-    Capabilities, Channel, Described, Drive, Identity, StatusPlace, StatusReport, UnitFacts,
+    Capabilities, Channel, Described, Drive, Identity, StatusPlace, StatusReport, UnitFacts, status_row,
 };
 use brushwork_motion_mind_wire::{Mode, Protocol};
 use serde::Serialize;
@@ -61,7 +61,7 @@ impl UnitFacts for MotionMindFacts {
     }
 
     fn status_row(&self, report: Option<&StatusReport>, _homed: Option<[bool; 2]>) -> Vec<StatusPlace> {
-        status_row(report)
+        status_row(report, INDICATORS)
     }
 
     fn describe_sent(&self, bytes: &[u8]) -> Described {

@@ -1,6 +1,6 @@
 //! The bits of STATUS as indicators, and the status row with a place for each.
 
-use brushwork_link::device::{Indicator, PlaceState, StatusPlace, StatusReport};
+use brushwork_link::device::Indicator;
 use brushwork_motion_mind_wire::status;
 use brushwork_values::Severity;
 
@@ -30,22 +30,6 @@ indicators! {
     PWMLIMIT "pwm_limit" "Drive at PWMLIMIT" Signal;
     INDEX "index" "Index input at ground" Signal;
     INPOSITION "in_position" "The motor is where it was sent" Signal;
-}
-
-/// The status row, in the order of the word.
-#[must_use]
-pub fn status_row(report: Option<&StatusReport>) -> Vec<StatusPlace> {
-    let state = |indicator: &Indicator| match report {
-        None => PlaceState::Unknown,
-        Some(report) if report.word & indicator.mask == 0 => PlaceState::Clear,
-        Some(_) => PlaceState::Active(indicator.severity),
-    };
-    let place = |indicator: &'static Indicator| StatusPlace {
-        short: indicator.short,
-        title: indicator.title,
-        state: state(indicator),
-    };
-    INDICATORS.iter().map(place).collect()
 }
 
 #[cfg(test)]

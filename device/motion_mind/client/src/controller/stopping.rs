@@ -83,15 +83,7 @@ pub fn of_modes(speaker: &Speaker, modes: &[Mode]) -> StopBytes {
 /// lost link are errors.
 pub fn confirm(unit: &mut MotionMind, line: &mut Line<'_>) -> Result<UnitStop, ExchangeError> {
     let on = unit.name(line);
-    let mut stop = UnitStop {
-        address: unit.identity.address,
-        confirmed: false,
-        script_ended: None,
-        buffers_empty: None,
-        still_driven_by: Vec::new(),
-        loop_left_off: false,
-        failures: Vec::new(),
-    };
+    let mut stop = UnitStop::new(unit.identity.address);
     // The answers of the unit do not say which question they answer, so none may be late any more.
     if line.exchange().may_hear_late_replies() {
         let (exchange, watch) = line.parts();

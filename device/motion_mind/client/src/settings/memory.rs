@@ -9,9 +9,9 @@ use brushwork_motion_mind_wire::numbers;
 use super::register_of;
 use crate::messages::{MotionMindActMessage, MotionMindCauseMessage, MotionMindRemedyMessage};
 use brushwork_link::failure::Failure;
-use brushwork_link::settings::{Difference, await_unit, diff};
+use brushwork_link::settings::await_unit;
 use brushwork_link::settings::{ReadReport, is_final, is_there, read_all, went_out};
-use brushwork_link::settings::{SaveReport, SaveVerdict, unknown};
+use brushwork_link::settings::{SaveReport, stored, unknown};
 use brushwork_link::unit::UnitAddress;
 use brushwork_link::wire::Wire;
 
@@ -54,24 +54,9 @@ pub fn save(wire: &mut dyn Wire, before: &ReadReport) -> Result<SaveReport, Fail
     }
     wire.report_progress(words.len(), words.len() + 1, "read back");
     Ok(match read_all(wire, *before.table.subject()) {
-        Ok(after) => judge(before, &after),
+        Ok(after) => stored(before, &after),
         Err(failure) => unknown(failure),
     })
-}
-
-/// What reads otherwise than it was to be stored was not stored.
-fn judge(before: &ReadReport, after: &ReadReport) -> SaveReport {
-    let known = |difference: &Difference| difference.left.is_some() && difference.right.is_some();
-    let differences: Vec<Difference> =
-        diff(&before.table, &before.image, &after.image).into_iter().filter(known).collect();
-    let is_stored = differences.is_empty();
-    SaveReport {
-        verdict: if is_stored { SaveVerdict::Stored } else { SaveVerdict::NotSaved },
-        differences,
-        eeprom: is_stored.then(|| before.image.clone()),
-        put_back: None,
-        failure: None,
-    }
 }
 
 /// Starts the unit anew, which loads its EEPROM, and waits until it answers.

@@ -2,11 +2,11 @@
 
 use super::channels::CHANNELS;
 use super::driving::{objection, preview};
-use super::indicators::status_row;
+use super::indicators::INDICATORS;
 use super::traffic::describe_sent;
 use brushwork_link::Message;
 use brushwork_link::device::{
-    Capabilities, Channel, Described, Drive, Identity, StatusPlace, StatusReport, UnitFacts,
+    Capabilities, Channel, Described, Drive, Identity, StatusPlace, StatusReport, UnitFacts, status_row,
 };
 use brushwork_suprmotr_wire::{Address, Radix, Status, operation};
 
@@ -65,7 +65,7 @@ impl UnitFacts for SuprMotrFacts {
     }
 
     fn status_row(&self, report: Option<&StatusReport>, _homed: Option<[bool; 2]>) -> Vec<StatusPlace> {
-        status_row(report)
+        status_row(report, INDICATORS)
     }
 
     fn describe_sent(&self, bytes: &[u8]) -> Described {

@@ -1,6 +1,6 @@
 //! The bits of the status as indicators, and the status row with a place for each.
 
-use brushwork_link::device::{Indicator, PlaceState, StatusPlace, StatusReport};
+use brushwork_link::device::Indicator;
 use brushwork_suprmotr_wire::{Status, inputs, limits, motion, operation};
 use brushwork_values::Severity;
 
@@ -72,25 +72,10 @@ indicators! {
     operation ADDRESSED 0, "addressed" "SEL" "The controller is selected" Signal;
 }
 
-/// The status row, in the order of the table.
-#[must_use]
-pub fn status_row(report: Option<&StatusReport>) -> Vec<StatusPlace> {
-    let state = |indicator: &Indicator| match report {
-        None => PlaceState::Unknown,
-        Some(report) if report.word & indicator.mask == 0 => PlaceState::Clear,
-        Some(_) => PlaceState::Active(indicator.severity),
-    };
-    let place = |indicator: &'static Indicator| StatusPlace {
-        short: indicator.short,
-        title: indicator.title,
-        state: state(indicator),
-    };
-    INDICATORS.iter().map(place).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use brushwork_link::device::StatusReport;
 
     #[test]
     fn every_bit_comes_back_from_the_word_and_each_indicator_has_its_own() {

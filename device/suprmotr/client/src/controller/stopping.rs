@@ -39,15 +39,7 @@ pub fn bytes(selection: Selection) -> StopBytes {
 /// link are errors.
 pub fn confirm(unit: &mut SuprMotr, line: &mut Line<'_>) -> Result<UnitStop, ExchangeError> {
     let on = unit.name(line);
-    let mut stop = UnitStop {
-        address: unit.identity.address,
-        confirmed: false,
-        script_ended: None,
-        buffers_empty: None,
-        still_driven_by: Vec::new(),
-        loop_left_off: false,
-        failures: Vec::new(),
-    };
+    let mut stop = UnitStop::new(unit.identity.address);
     if line.exchange().may_hear_late_replies() {
         let (exchange, watch) = line.parts();
         let lateness = if exchange.is_late() { exchange.longest_turnaround() } else { Duration::ZERO };

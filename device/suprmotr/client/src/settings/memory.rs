@@ -7,9 +7,9 @@ use super::rows::rows;
 use crate::controller::values::RESTART;
 use crate::messages::SuprMotrActMessage;
 use brushwork_link::failure::Failure;
-use brushwork_link::settings::{Difference, await_unit, diff};
+use brushwork_link::settings::await_unit;
 use brushwork_link::settings::{ReadReport, read_all, went_out};
-use brushwork_link::settings::{SaveReport, SaveVerdict, unknown};
+use brushwork_link::settings::{SaveReport, stored, unknown};
 use brushwork_link::wire::Wire;
 use brushwork_suprmotr_wire::Mnemonic;
 
@@ -20,24 +20,9 @@ pub fn save(wire: &mut dyn Wire, before: &ReadReport) -> Result<SaveReport, Fail
         return if went_out(&error) { Ok(unknown(failure)) } else { Err(failure) };
     }
     Ok(match read_all(wire, *before.table.subject()) {
-        Ok(after) => judge(before, &after),
+        Ok(after) => stored(before, &after),
         Err(failure) => unknown(failure),
     })
-}
-
-/// What reads otherwise than it was to be stored was not stored.
-fn judge(before: &ReadReport, after: &ReadReport) -> SaveReport {
-    let known = |difference: &Difference| difference.left.is_some() && difference.right.is_some();
-    let differences: Vec<Difference> =
-        diff(&before.table, &before.image, &after.image).into_iter().filter(known).collect();
-    let is_stored = differences.is_empty();
-    SaveReport {
-        verdict: if is_stored { SaveVerdict::Stored } else { SaveVerdict::NotSaved },
-        differences,
-        eeprom: is_stored.then(|| before.image.clone()),
-        put_back: None,
-        failure: None,
-    }
 }
 
 /// Starts the unit anew, which loads its EEPROM, and waits until it answers. Refused where a macro 0 would run.
