@@ -2,7 +2,7 @@
 
 use super::codes;
 use crate::diagnostic::{Diagnostic, excerpt};
-use crate::text::Span;
+use crate::lexing::{self, Cursor, Wrong, bytes_of};
 
 /// What a token is.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,59 +26,41 @@ pub enum TokenKind {
 }
 
 /// A token and where it stands.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Token {
-    /// What it is.
-    pub kind: TokenKind,
-    /// Where it is.
-    pub span: Span,
-}
+pub type Token = lexing::Token<TokenKind>;
 
-/// Something wrong with a piece of the text. A text of nothing else holds one at each of its bytes, so it stays small: what there is to say is
-/// worked out for those that are told.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Wrong {
-    /// Which error, or warning.
-    pub code: &'static str,
-    /// Where.
-    pub span: Span,
-}
-
-impl Wrong {
-    /// What there is to say; `text` is the whole text.
-    #[must_use]
-    pub fn reported(self, text: &str) -> Diagnostic {
-        let Self { code, span } = self;
-        let piece = span.of(text);
-        let shown = excerpt(piece);
-        let (message, hint) = match code {
-            codes::NAME_TOO_LONG => {
-                (format!("This name is {} characters long; {LONGEST_NAME} are allowed.", piece.len()), None)
-            }
-            codes::NUMBER_TOO_LARGE => {
-                (format!("`{shown}` does not fit in 32 bits."), Some("The largest number is 4294967295."))
-            }
-            codes::BAD_NUMBER if piece.starts_with('%') => (format!("`{shown}` is no binary number."), None),
-            codes::BAD_NUMBER if piece.starts_with("0x") || piece.starts_with("0X") => {
-                (format!("`{shown}` is no hexadecimal number."), None)
-            }
-            codes::BAD_NUMBER => {
-                (format!("`{shown}` is neither a number nor a name."), Some("A name begins with a letter."))
-            }
-            codes::OPEN_TEXT => {
-                ("This text has no end.".to_owned(), Some("Close it with a quote on the same line."))
-            }
-            codes::WIDE_CHARACTER => {
-                let wide = piece.chars().find(|letter| u8::try_from(*letter).is_err()).unwrap_or('?');
-                (format!("`{wide}` is more than a byte; a character of a text is one."), None)
-            }
-            codes::MISSPELT => {
-                ("The directive is #ELSEIF; only a heading of the manual has #ELSIF.".to_owned(), None)
-            }
-            _ => of_character(piece.chars().next().unwrap_or('?')),
-        };
-        Diagnostic { code, span, message, hint: hint.map(str::to_owned) }
-    }
+/// What there is to say of something wrong; `text` is the whole text.
+#[must_use]
+pub fn reported(wrong: Wrong, text: &str) -> Diagnostic {
+    let Wrong { code, span } = wrong;
+    let piece = span.of(text);
+    let shown = excerpt(piece);
+    let (message, hint) = match code {
+        codes::NAME_TOO_LONG => {
+            (format!("This name is {} characters long; {LONGEST_NAME} are allowed.", piece.len()), None)
+        }
+        codes::NUMBER_TOO_LARGE => {
+            (format!("`{shown}` does not fit in 32 bits."), Some("The largest number is 4294967295."))
+        }
+        codes::BAD_NUMBER if piece.starts_with('%') => (format!("`{shown}` is no binary number."), None),
+        codes::BAD_NUMBER if piece.starts_with("0x") || piece.starts_with("0X") => {
+            (format!("`{shown}` is no hexadecimal number."), None)
+        }
+        codes::BAD_NUMBER => {
+            (format!("`{shown}` is neither a number nor a name."), Some("A name begins with a letter."))
+        }
+        codes::OPEN_TEXT => {
+            ("This text has no end.".to_owned(), Some("Close it with a quote on the same line."))
+        }
+        codes::WIDE_CHARACTER => {
+            let wide = piece.chars().find(|letter| u8::try_from(*letter).is_err()).unwrap_or('?');
+            (format!("`{wide}` is more than a byte; a character of a text is one."), None)
+        }
+        codes::MISSPELT => {
+            ("The directive is #ELSEIF; only a heading of the manual has #ELSIF.".to_owned(), None)
+        }
+        _ => of_character(piece.chars().next().unwrap_or('?')),
+    };
+    Diagnostic { code, span, message, hint: hint.map(str::to_owned) }
 }
 
 /// The sentence and hint for a character that means nothing.
@@ -108,35 +90,33 @@ pub const LONGEST_NAME: usize = 1024;
 /// All tokens of a text, and what is wrong with it. The last one is [`TokenKind::End`].
 #[must_use]
 pub fn tokens(text: &str) -> (Vec<Token>, Vec<Wrong>) {
-    let mut lexer = Lexer { text, at: 0, tokens: Vec::new(), wrong: Vec::new() };
-    while lexer.at < text.len() {
+    let mut lexer = Lexer(Cursor::new(text));
+    while lexer.0.at < text.len() {
         lexer.next();
     }
-    lexer.push(TokenKind::Newline, text.len());
-    lexer.push(TokenKind::End, text.len());
-    (lexer.tokens, lexer.wrong)
+    lexer.0.push(TokenKind::Newline, text.len());
+    lexer.0.push(TokenKind::End, text.len());
+    (lexer.0.tokens, lexer.0.wrong)
 }
 
-struct Lexer<'a> {
-    text: &'a str,
-    at: usize,
-    tokens: Vec<Token>,
-    wrong: Vec<Wrong>,
-}
+struct Lexer<'a>(Cursor<'a, TokenKind>);
 
 impl Lexer<'_> {
     fn next(&mut self) {
-        let start = self.at;
-        let rest = &self.text[start..];
+        let start = self.0.at;
+        let rest = self.0.rest();
         let Some(letter) = rest.chars().next() else { return };
         match letter {
             '\n' => {
-                self.at += 1;
-                self.push(TokenKind::Newline, start);
+                self.0.at += 1;
+                self.0.push(TokenKind::Newline, start);
             }
-            letter if letter.is_whitespace() => self.at += letter.len_utf8(),
-            ';' => self.at += rest.find('\n').unwrap_or(rest.len()),
-            '"' => self.text_token(),
+            letter if letter.is_whitespace() => self.0.at += letter.len_utf8(),
+            ';' => self.0.skip_line(),
+            '"' => {
+                let inside = self.0.quoted(&['"'], codes::OPEN_TEXT, codes::WIDE_CHARACTER);
+                self.0.push(TokenKind::Text(bytes_of(inside)), start);
+            }
             '#' => self.directive(),
             '%' if rest[1..].starts_with(['0', '1']) => self.based(1, 2),
             '0' if rest[1..].starts_with(['x', 'X']) => self.based(2, 16),
@@ -146,136 +126,92 @@ impl Lexer<'_> {
         }
     }
 
-    fn push(&mut self, kind: TokenKind, start: usize) {
-        self.tokens.push(Token { kind, span: Span::new(start, self.at) });
-    }
-
-    fn report(&mut self, code: &'static str, start: usize) {
-        self.wrong.push(Wrong { code, span: Span::new(start, self.at) });
-    }
-
-    /// How many bytes from here on are letters, digits or underscores.
-    fn name_length(&self, from: usize) -> usize {
-        let rest = &self.text[from..];
-        rest.find(|letter: char| !letter.is_ascii_alphanumeric() && letter != '_').unwrap_or(rest.len())
-    }
-
     fn word(&mut self) {
-        let start = self.at;
-        self.at += self.name_length(start);
-        if self.at - start > LONGEST_NAME {
-            self.report(codes::NAME_TOO_LONG, start);
+        let start = self.0.at;
+        if self.0.skip_name() > LONGEST_NAME {
+            self.0.report(codes::NAME_TOO_LONG, start);
         }
-        self.push(TokenKind::Word, start);
+        self.0.push(TokenKind::Word, start);
     }
 
     /// `0x1F` and `%1010`, whose digits begin `prefix` bytes on.
     fn based(&mut self, prefix: usize, radix: u32) {
-        let start = self.at;
-        self.at += prefix + self.name_length(start + prefix);
-        let digits = self.text[start + prefix..self.at].replace('_', "x");
+        let start = self.0.at;
+        self.0.at += prefix;
+        self.0.skip_name();
+        let digits = self.0.since(start + prefix).replace('_', "x");
         let value = u64::from_str_radix(&digits, radix);
         let kind = match value.map(u32::try_from) {
             Ok(Ok(value)) => value,
             Ok(Err(_)) => self.too_large(start),
             Err(error) if *error.kind() == std::num::IntErrorKind::PosOverflow => self.too_large(start),
             Err(_) => {
-                self.report(codes::BAD_NUMBER, start);
+                self.0.report(codes::BAD_NUMBER, start);
                 0
             }
         };
-        self.push(TokenKind::Integer(kind), start);
+        self.0.push(TokenKind::Integer(kind), start);
     }
 
     fn too_large(&mut self, start: usize) -> u32 {
-        self.report(codes::NUMBER_TOO_LARGE, start);
+        self.0.report(codes::NUMBER_TOO_LARGE, start);
         0
     }
 
-    fn digits(&mut self) {
-        let rest = &self.text[self.at..];
-        self.at += rest.find(|letter: char| !letter.is_ascii_digit()).unwrap_or(rest.len());
-    }
-
     fn number(&mut self) {
-        let start = self.at;
-        self.digits();
-        let rest = &self.text[self.at..];
+        let start = self.0.at;
+        self.0.skip_digits();
+        let rest = self.0.rest();
         if rest.starts_with('.') && rest[1..].starts_with(|letter: char| letter.is_ascii_digit()) {
-            self.at += 1;
-            self.digits();
+            self.0.at += 1;
+            self.0.skip_digits();
             self.exponent();
-            let value = self.text[start..self.at].parse().unwrap_or(0.0);
-            return self.push(TokenKind::Float(value), start);
+            let value = self.0.since(start).parse().unwrap_or(0.0);
+            return self.0.push(TokenKind::Float(value), start);
         }
-        let tail = self.name_length(self.at);
-        if tail > 0 {
-            self.at += tail;
-            self.report(codes::BAD_NUMBER, start);
-            return self.push(TokenKind::Integer(0), start);
+        if self.0.skip_name() > 0 {
+            self.0.report(codes::BAD_NUMBER, start);
+            return self.0.push(TokenKind::Integer(0), start);
         }
-        let value = self.text[start..self.at].parse().unwrap_or_else(|_| self.too_large(start));
-        self.push(TokenKind::Integer(value), start);
+        let value = self.0.since(start).parse().unwrap_or_else(|_| self.too_large(start));
+        self.0.push(TokenKind::Integer(value), start);
     }
 
     fn exponent(&mut self) {
-        let rest = &self.text[self.at..];
+        let rest = self.0.rest();
         let Some(tail) = rest.strip_prefix(['e', 'E']) else { return };
         let digits = tail.strip_prefix(['+', '-']).unwrap_or(tail);
         if digits.starts_with(|letter: char| letter.is_ascii_digit()) {
-            self.at += rest.len() - digits.len();
-            self.digits();
+            self.0.at += rest.len() - digits.len();
+            self.0.skip_digits();
         }
-    }
-
-    fn text_token(&mut self) {
-        let start = self.at;
-        let rest = &self.text[start + 1..];
-        let length = rest.find(['"', '\n']).unwrap_or(rest.len());
-        let mut inside = &rest[..length];
-        if rest[length..].starts_with('"') {
-            self.at = start + length + 2;
-        } else {
-            inside = inside.trim_end_matches('\r');
-            self.at = start + 1 + inside.len();
-            self.report(codes::OPEN_TEXT, start);
-        }
-        let bytes: Vec<u8> = inside.chars().map(|letter| u8::try_from(letter).unwrap_or(b'?')).collect();
-        if inside.chars().any(|letter| u8::try_from(letter).is_err()) {
-            self.report(codes::WIDE_CHARACTER, start);
-        }
-        self.push(TokenKind::Text(bytes), start);
     }
 
     fn directive(&mut self) {
-        let start = self.at;
-        self.at += 1 + self.name_length(start + 1);
-        let mut name = self.text[start + 1..self.at].to_ascii_lowercase();
+        let start = self.0.at;
+        self.0.at += 1;
+        self.0.skip_name();
+        let mut name = self.0.since(start + 1).to_ascii_lowercase();
         if name == "elsif" {
-            self.report(codes::MISSPELT, start);
+            self.0.report(codes::MISSPELT, start);
             name = "elseif".to_owned();
         }
-        self.push(TokenKind::Directive(name), start);
-    }
-
-    /// `$1F`, as other languages write it.
-    fn dollar(&mut self, start: usize) {
-        self.at += self.name_length(self.at);
-        self.report(codes::BAD_CHARACTER, start);
-        self.push(TokenKind::Integer(0), start);
+        self.0.push(TokenKind::Directive(name), start);
     }
 
     fn sign(&mut self, letter: char) {
-        let start = self.at;
-        if let Some(sign) = SIGNS.into_iter().find(|sign| self.text[start..].starts_with(sign)) {
-            self.at += sign.len();
-            return self.push(TokenKind::Sign(sign), start);
+        let start = self.0.at;
+        if let Some(sign) = self.0.sign(&SIGNS) {
+            return self.0.push(TokenKind::Sign(sign), start);
         }
-        self.at += letter.len_utf8();
+        self.0.at += letter.len_utf8();
         if letter == '$' {
-            return self.dollar(start);
+            // `$1F`, as other languages write it.
+            self.0.skip_name();
+            self.0.report(codes::BAD_CHARACTER, start);
+            return self.0.push(TokenKind::Integer(0), start);
         }
-        self.report(codes::BAD_CHARACTER, start);
+        self.0.report(codes::BAD_CHARACTER, start);
     }
 }
 

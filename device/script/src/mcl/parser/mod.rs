@@ -13,7 +13,7 @@ mod whiles;
 use super::ast::{Name, Statement};
 use super::codes;
 use super::constant::Constant;
-use super::lexer::{Token, TokenKind, tokens};
+use super::lexer::{Token, TokenKind, reported, tokens};
 use super::words;
 use crate::diagnostic::{Diagnostic, Diagnostics, excerpt};
 use crate::program::limits;
@@ -70,7 +70,7 @@ pub fn parse(text: &str) -> Parsed {
         part.is_none_or(|part| !left_out[part].contains(span))
     };
     for wrong in wrong.into_iter().filter(|wrong| counts(wrong.span)) {
-        diagnostics.note(wrong.span.start, wrong.code, || wrong.reported(text));
+        diagnostics.note(wrong.span.start, wrong.code, || reported(wrong, text));
     }
     Parsed { statements, diagnostics, left_out }
 }

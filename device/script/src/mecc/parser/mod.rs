@@ -10,7 +10,7 @@ mod statement;
 
 use super::ast::{Item, Name};
 use super::codes;
-use super::lexer::{Token, TokenKind, tokens};
+use super::lexer::{Token, TokenKind, reported, tokens};
 use super::words;
 use crate::diagnostic::{Diagnostic, Diagnostics, excerpt};
 use crate::mcl::words::did_you_mean;
@@ -59,7 +59,7 @@ pub fn parse(text: &str) -> Parsed {
     let items = parser.items();
     let mut diagnostics = parser.diagnostics;
     for wrong in wrong {
-        diagnostics.note(wrong.span.start, wrong.code, || wrong.reported(text));
+        diagnostics.note(wrong.span.start, wrong.code, || reported(wrong, text));
     }
     Parsed { items, diagnostics }
 }
