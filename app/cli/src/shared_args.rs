@@ -118,6 +118,14 @@ pub fn parse_seconds(text: &str) -> Result<Duration, String> {
         .ok_or_else(|| format!("\"{text}\" is no time in seconds: use for example 2 or 0.5"))
 }
 
+/// Seconds, or a time with its unit: 5, 2.5, 90s, 2m, 500ms.
+pub fn parse_time(text: &str) -> Result<Duration, String> {
+    parse_seconds(text).or_else(|_| {
+        humantime::parse_duration(text)
+            .map_err(|_| "give a time such as 5 (seconds), 500ms, 90s or 2m".to_owned())
+    })
+}
+
 fn address_help() -> String {
     format!(
         "Address of the controller on its line, by default that of a new unit: {}. Several as 0x80,0x82 or 0x80-0x84, or all that are \

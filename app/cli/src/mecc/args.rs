@@ -6,7 +6,7 @@ use std::time::Duration;
 use clap::{Args, Subcommand};
 
 use crate::new_file::Replace;
-use crate::shared_args::parse_seconds;
+use crate::shared_args::parse_time;
 
 /// Arguments of `brushwork mecc`.
 #[derive(Debug, Args)]
@@ -100,14 +100,6 @@ pub struct ReferenceArgs {
     /// Print JSON.
     #[arg(long)]
     pub json: bool,
-}
-
-/// Seconds, or a time with its unit: 5, 2.5, 90s, 500ms.
-fn parse_time(text: &str) -> Result<Duration, String> {
-    parse_seconds(text).or_else(|_| {
-        humantime::parse_duration(text)
-            .map_err(|_| "give a time such as 5 (seconds), 500ms or 90s".to_owned())
-    })
 }
 
 fn parse_sent(text: &str) -> Result<(Duration, String), String> {

@@ -6,7 +6,7 @@ use std::time::Duration;
 use clap::{Args, Subcommand};
 
 use crate::new_file::Replace;
-use crate::shared_args::{ScriptBuses, parse_seconds};
+use crate::shared_args::{ScriptBuses, parse_time};
 
 /// Arguments of `brushwork mcl`.
 #[derive(Debug, Args)]
@@ -91,7 +91,7 @@ pub struct RunArgs {
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
     /// How long it runs at most, in the controller's time.
-    #[arg(long, value_name = "TIME", default_value = "60s", value_parser = parse_limit)]
+    #[arg(long, value_name = "TIME", default_value = "60s", value_parser = parse_time)]
     pub limit: Duration,
     /// The stream that is printed and that standard input feeds, as GETS and PUTS number it: 0 USB, 2 TTL, 3 RS-232.
     #[arg(long, value_name = "0|2|3", default_value_t = 0, value_parser = parse_stream)]
@@ -145,14 +145,6 @@ pub struct ReferenceArgs {
     /// Print JSON.
     #[arg(long)]
     pub json: bool,
-}
-
-/// Seconds, or a time with its unit: 5, 2.5, 90s, 2m, 500ms.
-fn parse_limit(text: &str) -> Result<Duration, String> {
-    parse_seconds(text).or_else(|_| {
-        humantime::parse_duration(text)
-            .map_err(|_| "give a time such as 5 (seconds), 500ms, 90s or 2m".to_owned())
-    })
 }
 
 fn parse_stream(text: &str) -> Result<u8, String> {
