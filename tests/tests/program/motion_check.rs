@@ -137,7 +137,7 @@ fn a_bridge_that_gives_nothing_is_named_where_no_status_tells_it() {
             driven.run(2 * SECOND);
             // A status that has a bit for it ends the motion by itself.
             match driven.disarmed.first() {
-                Some(DisarmReason::Fault(what)) => println!("{name}, {fault:?}: {what}"),
+                Some(DisarmReason::Fault(what)) => println!("{name}, {fault:?}: {what:?}"),
                 Some(_) | None => {
                     println!("{name}, {fault:?}: {:?}", driven.findings);
                     wrong.extend(driven.wrong(Kind::NoOutput, &["driver fault", "25.0 %"]));

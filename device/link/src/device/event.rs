@@ -147,8 +147,8 @@ pub enum DisarmReason {
     StopFromOutside,
     /// Nobody renewed the motion in time.
     DeadMan,
-    /// The controller reports a fault.
-    Fault(String),
+    /// The controller reports faults, the titles of their indicators.
+    Fault(Vec<&'static str>),
     /// Another screen was armed.
     ScopeChange,
     /// Another unit was selected.
@@ -207,7 +207,7 @@ impl fmt::Display for DisarmReason {
             Self::DeadMan => f.write_str(
                 "Disarmed: this computer answered late: the program did not renew the motion within 250 ms",
             ),
-            Self::Fault(what) => write!(f, "Disarmed: the controller reports {what}"),
+            Self::Fault(faults) => write!(f, "Disarmed: the controller reports {}", faults.join(", ")),
             Self::ScopeChange => f.write_str("Disarmed: another screen was opened"),
             Self::Selection => f.write_str("Disarmed: another unit was selected"),
             Self::SettingsChanged => {

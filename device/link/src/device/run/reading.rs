@@ -143,7 +143,7 @@ impl DeviceLoop {
         }
         let faults: Vec<_> = status.faults().collect();
         if !faults.is_empty() {
-            self.halt(DisarmReason::Fault(faults.join(", ")));
+            self.halt(DisarmReason::Fault(faults));
         } else if restarted {
             self.halt(DisarmReason::Restarted);
         }
