@@ -57,6 +57,43 @@ messages! {
 }
 
 messages! {
+    /// How an examination ended, and what became of its report.
+    pub enum ExaminationMessage {
+        Done "The examination is done.",
+        CutShort { cause: EndedMessage } "The examination was ended before its end: {cause}.",
+        Panicked { word: String } "Brushwork had a bug in the examination. Its last word: {word}",
+        LinkLost "The link was lost in the examination. What it had changed can be put back when the controller is connected again.",
+        NotBegun "The settings of this controller are not known yet. Wait until they are read.",
+        NoPath "Type where the report is to go: a path that ends in .json, or in anything else for text.",
+        IsThere { path: String } "{path} is there already, and is not replaced. Choose another name.",
+        NotSaved { path: String, error: String } "The report could not be written to {path}: {error}.",
+    }
+}
+
+messages! {
+    /// What keeps what is typed from being sent.
+    pub enum WindowTypedMessage {
+        NoCommand "Choose a command.",
+        NotBytes { field: &'static str, text: String, bytes: usize } "{field}: \"{text}\" is not {bytes} bytes. Write each as two hexadecimal digits.",
+        NoList { field: &'static str } "{field}: lists cannot be typed here.",
+        NoNumber { field: &'static str, text: String } "{field}: \"{text}\" is no number.",
+        NotInRange { field: &'static str, number: i64, least: i64, most: i64 } "{field}: {number} does not fit. It takes {least} to {most}.",
+        NotEncoded { clause: String } "It cannot be sent: {clause}.",
+        NoScriptBytes { text: String } "`{text}` is not bytes in hex: write them as 48 65 6c 6c 6f.",
+        SelfTest "The self-test is not sent: the unit would need a power cycle after it.",
+        NoAddress "A command is a letter and two digits of address, as in R01 04. The unit would not answer.",
+        BadCommand "The unit would answer BAD COMMAND.",
+        NoLine "Type a command, as R01 04 or W01 04 6000.",
+        NoPairs "These are not pairs of hexadecimal digits.",
+        NoBytes "Type the bytes of a command, as 1D 01 04 22.",
+        MoreBytes { bytes: usize } "More follows a whole command: {bytes} in bytes. Send one command at a time.",
+        NoChecksum { checksum: u8 } "The checksum is missing: it is {checksum:02X}.",
+        OtherChecksum { checksum: u8 } "No command: the unit would be silent. If the last byte is the checksum, it should be {checksum:02X}.",
+        NotYet "No command yet: the unit would be silent.",
+    }
+}
+
+messages! {
     /// What the message line says of what happened.
     pub enum WindowStatusMessage {
         NotNow { act: String, why: String } "{act}: {why}",

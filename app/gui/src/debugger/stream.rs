@@ -82,8 +82,9 @@ fn input_ui(ui: &mut Ui, terminal: &mut Terminal, waiting: usize, commands: &mut
     });
     let palette = Palette::of(ui);
     match (&terminal.refused, waiting) {
-        (Some(why), _) => drop(ui.label(RichText::new(why).color(palette.error))),
+        (Some(why), _) => drop(ui.label(RichText::new(why.to_string()).color(palette.error))),
         (None, 0) => {}
+        (None, 1) => drop(ui.weak("1 byte waits for GETS.")),
         (None, waiting) => drop(ui.weak(format!("{waiting} bytes wait for GETS."))),
     }
 }

@@ -1,5 +1,6 @@
 //! The terminal of a script: what PUTS sent on each stream, and a line to type for GETS.
 
+use crate::messages::WindowTypedMessage;
 use brushwork_script::debug::{Chunk, View};
 
 /// Characters that are kept.
@@ -54,7 +55,7 @@ pub struct Terminal {
     /// The stream that is typed to.
     pub to_stream: u32,
     /// What could not be understood of what was typed.
-    pub refused: Option<String>,
+    pub refused: Option<WindowTypedMessage>,
     shown: Shown,
 }
 
@@ -145,7 +146,7 @@ impl Terminal {
     ///
     /// # Errors
     /// A sentence: what is typed in hex is not hex.
-    pub fn typed(&mut self) -> Result<Vec<u8>, String> {
+    pub fn typed(&mut self) -> Result<Vec<u8>, WindowTypedMessage> {
         let mut bytes = if self.hex_input { of_hex(&self.input)? } else { self.input.as_bytes().to_vec() };
         if !self.hex_input {
             bytes.extend(self.line_end.bytes());
@@ -182,9 +183,9 @@ fn hex(bytes: &[u8]) -> String {
     bytes.chunks(16).map(row).collect()
 }
 
-fn of_hex(text: &str) -> Result<Vec<u8>, String> {
+fn of_hex(text: &str) -> Result<Vec<u8>, WindowTypedMessage> {
     let digits: String = text.replace("0x", " ").split([' ', ',']).collect();
-    let wrong = || format!("`{text}` is not bytes in hex: write them as 48 65 6c 6c 6f.");
+    let wrong = || WindowTypedMessage::NoScriptBytes { text: text.to_owned() };
     if digits.is_empty() || !digits.len().is_multiple_of(2) || !digits.is_ascii() {
         return Err(wrong());
     }
@@ -227,7 +228,7 @@ mod tests {
         terminal.input = "4".into();
         assert!(terminal.typed().is_err());
         terminal.input = "zz".into();
-        assert!(terminal.typed().unwrap_err().contains("48 65"));
+        assert!(terminal.typed().unwrap_err().to_string().contains("48 65"));
     }
 
     #[test]

@@ -3,8 +3,9 @@
 //! What may go out is decided by the same gate as everywhere: commands that move need an armed screen, guesses go to
 //! simulated controllers only. The device thread asks it again.
 
-use brushwork_link::Failure;
+use crate::messages::WindowTypedMessage;
 use brushwork_link::exchange::Permit;
+use brushwork_link::{Failure, Message};
 use brushwork_mcp_client::packet::{Ask, gate};
 use brushwork_mcp_wire::packet_serial::{
     Address, COMMANDS, Command, Effect, Generation, Request, describe_reply, describe_request, lookup,
@@ -35,7 +36,7 @@ pub struct Prepared {
     pub text: String,
     pub effect: Effect,
     /// Why it is not sent now, if so.
-    pub refusal: Option<String>,
+    pub refusal: Option<Message>,
 }
 
 impl Composer {
@@ -71,17 +72,18 @@ impl Composer {
         address: Address,
         generation: Generation,
         permit: Permit,
-    ) -> Result<Prepared, String> {
-        let command = self.command.ok_or("Choose a command.")?;
+    ) -> Result<Prepared, Message> {
+        let command = self.command.ok_or(WindowTypedMessage::NoCommand)?;
         let fields = self.fields(generation);
         let typed = fields.iter().zip(&self.arguments);
-        let values =
-            typed.map(|(field, text)| value_of(field, text)).collect::<Result<Vec<Value>, String>>()?;
+        let values = typed.map(|(field, text)| value_of(field, text)).collect::<Result<Vec<Value>, _>>()?;
         let request = Request { address, command, values };
-        let bytes = request.encode(generation).map_err(|error| format!("{error}."))?;
+        let bytes = request
+            .encode(generation)
+            .map_err(|error| WindowTypedMessage::NotEncoded { clause: error.to_string() })?;
         let text = describe_request(&request, generation);
         let gated = gate(&Ask { request: &request, generation, permit, retries: 0 });
-        let refusal = gated.err().map(|error| error.full());
+        let refusal = gated.err().map(|error| error.message());
         let effect = lookup(command).map_or(Effect::Query, |row| row.effect(generation));
         Ok(Prepared { request, bytes, text, effect, refusal })
     }
@@ -129,19 +131,19 @@ fn first_text(field: &Field) -> String {
 
 /// What was typed for a field, as its value.
 #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
-fn value_of(field: &Field, text: &str) -> Result<Value, String> {
+fn value_of(field: &Field, text: &str) -> Result<Value, WindowTypedMessage> {
     match field.kind {
         Kind::Text { .. } | Kind::Ascii36 | Kind::Utf16Le36 => Ok(Value::Text(text.to_owned())),
         Kind::Bytes(count) => bytes_of(text, count).map(Value::Bytes).ok_or_else(|| {
-            format!("{}: \"{text}\" is not {count} bytes. Write each as two hexadecimal digits.", field.name)
+            WindowTypedMessage::NotBytes { field: field.name, text: text.to_owned(), bytes: count }
         }),
-        Kind::Counted(_) => Err(format!("{}: lists cannot be typed here.", field.name)),
+        Kind::Counted(_) => Err(WindowTypedMessage::NoList { field: field.name }),
         _ => number_of(field, text).map(Value::Int),
     }
 }
 
 /// A decimal or hexadecimal number, or the name of a coded value.
-fn number_of(field: &Field, text: &str) -> Result<i64, String> {
+fn number_of(field: &Field, text: &str) -> Result<i64, WindowTypedMessage> {
     let text = text.trim();
     let (sign, digits) = text.strip_prefix('-').map_or((1, text), |digits| (-1, digits));
     let plain = match digits.strip_prefix("0x").or(digits.strip_prefix("0X")) {
@@ -150,11 +152,11 @@ fn number_of(field: &Field, text: &str) -> Result<i64, String> {
     };
     let named = || brushwork_values::by_key(field.codes, text).map(|code| code.raw);
     let Some(number) = plain.map(|number: i64| sign * number).or_else(named) else {
-        return Err(format!("{}: \"{text}\" is no number.", field.name));
+        return Err(WindowTypedMessage::NoNumber { field: field.name, text: text.to_owned() });
     };
     match field.kind.limits() {
         Some((least, most)) if !(least..=most).contains(&number) => {
-            Err(format!("{}: {number} does not fit. It takes {least} to {most}.", field.name))
+            Err(WindowTypedMessage::NotInRange { field: field.name, number, least, most })
         }
         _ => Ok(number),
     }
@@ -182,7 +184,7 @@ mod tests {
         composer
     }
 
-    fn prepare(composer: &Composer, permit: Permit) -> Result<Prepared, String> {
+    fn prepare(composer: &Composer, permit: Permit) -> Result<Prepared, Message> {
         composer.prepare(Address::DEFAULT, G1, permit)
     }
 
@@ -200,7 +202,7 @@ mod tests {
         // 0x80, command 32, duty 0x1000, CRC.
         let refused = prepare(&duty, Permit::default()).unwrap();
         assert_eq!(refused.bytes[..4], [0x80, 32, 0x10, 0x00]);
-        assert!(refused.refusal.is_some_and(|why| why.contains("armed")));
+        assert!(refused.refusal.is_some_and(|why| why.to_string().contains("armed")));
         assert_eq!(prepare(&duty, Permit { motion: true, ..Permit::default() }).unwrap().refusal, None);
     }
 
@@ -222,7 +224,7 @@ mod tests {
     #[test]
     fn arguments_that_make_no_sense_are_named() {
         let why = |arguments: &[&str]| {
-            prepare(&composer(number::DUTY_M1, arguments), Permit::default()).unwrap_err()
+            prepare(&composer(number::DUTY_M1, arguments), Permit::default()).unwrap_err().to_string()
         };
         assert_eq!(why(&["fast"]), "duty: \"fast\" is no number.");
         assert_eq!(why(&["40000"]), "duty: 40000 does not fit. It takes -32768 to 32767.");

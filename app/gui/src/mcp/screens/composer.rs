@@ -31,7 +31,7 @@ pub fn composer_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) -> O
                 match composer.prepare(address, generation, permit) {
                     Ok(prepared) => send_ui(ui, composer, generation, prepared, commands),
                     Err(why) => {
-                        ui.weak(why);
+                        ui.weak(why.to_string());
                     }
                 }
                 answer_ui(ui, composer);

@@ -8,6 +8,7 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
+use crate::messages::WindowTypedMessage;
 use brushwork_link::device::Event;
 use brushwork_motion_mind_client::{MotionMindFacts, describe_received, describe_sent};
 use brushwork_motion_mind_wire::{
@@ -178,7 +179,7 @@ fn shown(bytes: &[u8], protocol: Protocol) -> String {
 }
 
 /// What a line of text means, or why it is none.
-pub fn of_text(typed: &str) -> Result<Understood, String> {
+pub fn of_text(typed: &str) -> Result<Understood, WindowTypedMessage> {
     let mut reader = LineReader::new();
     let mut event = None;
     for byte in typed.trim().bytes().chain(*b"\r\n") {
@@ -186,25 +187,20 @@ pub fn of_text(typed: &str) -> Result<Understood, String> {
     }
     match event {
         Some(LineEvent::Command(address, command)) => Ok(Understood { address, command }),
-        Some(LineEvent::SelfTest(_)) => {
-            Err("The self-test is not sent: the unit would need a power cycle after it.".to_owned())
-        }
-        Some(LineEvent::NotUnderstood { address: None, .. }) => {
-            Err("A command is a letter and two digits of address, as in R01 04. The unit would not answer."
-                .to_owned())
-        }
-        Some(LineEvent::NotUnderstood { .. }) => Err("The unit would answer BAD COMMAND.".to_owned()),
-        None => Err("Type a command, as R01 04 or W01 04 6000.".to_owned()),
+        Some(LineEvent::SelfTest(_)) => Err(WindowTypedMessage::SelfTest),
+        Some(LineEvent::NotUnderstood { address: None, .. }) => Err(WindowTypedMessage::NoAddress),
+        Some(LineEvent::NotUnderstood { .. }) => Err(WindowTypedMessage::BadCommand),
+        None => Err(WindowTypedMessage::NoLine),
     }
 }
 
 /// What bytes in hex mean, or why they are no command. A checksum that is missing is told.
-pub fn of_hex(typed: &str) -> Result<Understood, String> {
+pub fn of_hex(typed: &str) -> Result<Understood, WindowTypedMessage> {
     let Some(bytes) = bytes_of(typed) else {
-        return Err("These are not pairs of hexadecimal digits.".to_owned());
+        return Err(WindowTypedMessage::NoPairs);
     };
     if bytes.is_empty() {
-        return Err("Type the bytes of a command, as 1D 01 04 22.".to_owned());
+        return Err(WindowTypedMessage::NoBytes);
     }
     let mut reader = FrameReader::new();
     for (index, byte) in bytes.iter().enumerate() {
@@ -212,7 +208,7 @@ pub fn of_hex(typed: &str) -> Result<Understood, String> {
             let rest = bytes.len() - index - 1;
             return match rest {
                 0 => Ok(Understood { address, command }),
-                _ => Err(format!("A whole command is followed by {rest} more bytes. Send one at a time.")),
+                _ => Err(WindowTypedMessage::MoreBytes { bytes: rest }),
             };
         }
     }
@@ -221,14 +217,11 @@ pub fn of_hex(typed: &str) -> Result<Understood, String> {
     let mut reader = FrameReader::new();
     let is_whole = with_sum.iter().any(|byte| reader.feed(*byte, Duration::ZERO).is_some());
     Err(match (is_whole, bytes.split_last()) {
-        (true, _) => format!("The checksum is missing: it is {:02X}.", checksum(&bytes)),
+        (true, _) => WindowTypedMessage::NoChecksum { checksum: checksum(&bytes) },
         (false, Some((last, rest))) if rest.len() >= 2 && checksum(rest) != *last => {
-            format!(
-                "No command: the unit would be silent. If the last byte is the checksum, it should be {:02X}.",
-                checksum(rest)
-            )
+            WindowTypedMessage::OtherChecksum { checksum: checksum(rest) }
         }
-        _ => "No command yet: the unit would be silent.".to_owned(),
+        _ => WindowTypedMessage::NotYet,
     })
 }
 
@@ -242,7 +235,7 @@ fn bytes_of(typed: &str) -> Option<Vec<u8>> {
 
 impl Terminal {
     /// What stands in the field.
-    pub fn understood(&self) -> Result<Understood, String> {
+    pub fn understood(&self) -> Result<Understood, WindowTypedMessage> {
         match self.form {
             Form::Text => of_text(&self.typed),
             Form::Hex => of_hex(&self.typed),
@@ -390,8 +383,8 @@ fn reported(values: &Values) -> String {
 mod tests {
     use super::*;
 
-    fn meaning(result: Result<Understood, String>) -> String {
-        result.map_or_else(|why| why, |understood| understood.meaning())
+    fn meaning(result: Result<Understood, WindowTypedMessage>) -> String {
+        result.map_or_else(|why| why.to_string(), |understood| understood.meaning())
     }
 
     #[test]

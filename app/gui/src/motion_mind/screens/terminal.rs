@@ -43,7 +43,7 @@ pub fn terminal_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             understood_ui(ui, terminal, &understood, (address, facts), entered, commands);
         }
         Err(why) => {
-            ui.add(Label::new(RichText::new(why).weak()).wrap());
+            ui.add(Label::new(RichText::new(why.to_string()).weak()).wrap());
             as_typed_ui(ui, terminal, facts, commands);
         }
     }
