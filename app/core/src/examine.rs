@@ -5,6 +5,7 @@
 //! has changed, on every way out on which there is still a link. Nothing is asked here: whoever uses this asks the owner before each step that
 //! does more than read.
 
+use std::fmt;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -42,6 +43,12 @@ pub struct Examining {
     examiner: &'static dyn Examiner,
     subject: Option<Subject>,
     found: Arc<Mutex<Examination>>,
+}
+
+impl fmt::Debug for Examining {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Examining").field("subject", &self.subject).finish_non_exhaustive()
+    }
 }
 
 /// Whose motor is looked at, and what writing has to know of the way to the controller.
@@ -174,11 +181,12 @@ impl Taking {
         if moves { Job::moving(title, MOVING_LIMIT, work) } else { Job::new(title, ASKING_LIMIT, work) }
     }
 
-    /// The job after: puts back what was changed, proven by reading, and closes the journal. None where nothing was begun.
+    /// The job after: puts back what was changed, proven by reading, and closes the journal. None where nothing was begun. Where something breaks
+    /// into it, it can be asked for again.
     #[must_use]
     pub fn put_back(&self) -> Option<Job<Restored>> {
         let keeper = self.keeper.clone();
-        if let Some(before) = tune::take(&self.loops) {
+        if let Some(before) = held(&self.loops) {
             let target = Target { encoder: Some(before.encoder), ..self.target() };
             return Some(Job::new(LoopActMessage::PutBack, KEEPING_LIMIT, move |context| {
                 let kept = Registers::<<Families as Tuned>::Law>::default();
@@ -187,7 +195,7 @@ impl Taking {
                 Ok(restored)
             }));
         }
-        if let Some(before) = tune::take(&self.settings) {
+        if let Some(before) = held(&self.settings) {
             let (step, options) = (self.step, WriteOptions { as_read: true, ..self.way.options });
             return Some(Job::new(ExamineActMessage::PutSettingsBack, KEEPING_LIMIT, move |context| {
                 let held = before.image.iter().filter(|(key, _)| touches(step, key));
@@ -205,7 +213,7 @@ impl Taking {
                 }
             }));
         }
-        tune::take(&self.is_saving).map(|()| {
+        held(&self.is_saving).map(|()| {
             Job::new(ExamineActMessage::CloseJournal, KEEPING_LIMIT, move |context| {
                 end_act(context, &mut **keeper.lock(), Ending::Known);
                 Ok(Restored::default())
@@ -216,6 +224,16 @@ impl Taking {
     fn target(&self) -> Target {
         Target { motor: self.way.motor, encoder: None, stream: self.way.options.own_stream }
     }
+}
+
+impl fmt::Debug for Taking {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Taking").field("step", &self.step.key).finish_non_exhaustive()
+    }
+}
+
+fn held<T: Clone>(slot: &Slot<T>) -> Option<T> {
+    slot.lock().unwrap_or_else(PoisonError::into_inner).clone()
 }
 
 fn touches(step: &Step, key: &str) -> bool {

@@ -30,6 +30,7 @@ use super::{actions, keys, shell, theme};
 use crate::model::{Arming, Effect, Gravity, Owner, Screen, Sheet, Tab};
 
 mod debugging;
+mod examining;
 mod leaving;
 mod linking;
 mod own;
@@ -121,6 +122,7 @@ impl App {
         }
         self.ask_debugger(&ctx);
         self.go_on_tuning();
+        self.go_on_examining();
         self.read_loops();
         self.read_for_screen();
         self.end_calibrations();
@@ -311,6 +313,8 @@ impl App {
             Command::Transact { id, command, values } => self.transact(Transact { id, command, values }),
             Command::Guided(action) => self.guided(action),
             Command::Tune(action) => self.tune(action),
+            Command::OpenExamination => model.front.examination.open = true,
+            Command::Examination(action) => self.examine(action),
             Command::OpenFirmware => model.front.own.iter_mut().for_each(|own| own.open_firmware()),
             Command::OpenSheet(sheet) => self.open_sheet(sheet),
             Command::ShowSettings(section) => {
@@ -419,6 +423,7 @@ impl App {
         self.links.stop_all();
         for connection in self.model.connections_mut() {
             connection.tune.abort(EndedMessage::StopPressed);
+            connection.examination.cancel(Gravity::Warning, EndedMessage::StopPressed);
             connection.link.arming = Arming::Disarmed;
             connection.rest();
         }
@@ -426,6 +431,9 @@ impl App {
 
     fn disarm(&mut self) {
         self.model.front.tune.abort(EndedMessage::ScreenLeft);
+        if self.model.front.examination.arm_scope().is_some() {
+            self.model.front.examination.cancel(Gravity::Warning, EndedMessage::ScreenLeft);
+        }
         if self.model.front.link.arming != Arming::Disarmed {
             self.request(Request::Disarm);
         }

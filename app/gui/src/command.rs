@@ -13,6 +13,7 @@ use super::family_action::FamilyAction;
 use super::graph::GraphAction;
 use super::mcl::MclAction;
 use super::model::ConnectionId;
+use super::model::examination::ExaminationAction;
 pub use super::model::guided::GuidedAction;
 pub use super::tune::TuneAction;
 use crate::model::{Column, HelpPage, Screen, Section, SettingsAction, Sheet, Tab};
@@ -78,6 +79,9 @@ pub enum Command {
     Scale(u16),
     /// Opens the window for firmware updates.
     OpenFirmware,
+    /// Opens the window that examines the controller.
+    OpenExamination,
+    Examination(ExaminationAction),
     /// Opens the window for connecting to a CANopen bus.
     OpenCanOpen,
     /// Starts a node of the CAN bus in front.

@@ -28,6 +28,8 @@ pub(super) const ACTIONS: &[Action] = &[
         Keys::None, always, |_| Command::OpenCanOpen),
     entry!(Device 2 "device.firmware", "Firmware…", "Shows what firmware is installed and what is known about it, and updates it from a file of yours.",
         Keys::None, |model| has(model, Ability::Firmware, always), |_| Command::OpenFirmware),
+    entry!(Device 2 "device.examine", "Examine This Controller…", "Finds out what the controller answers and how, for a report that you can send. It reads; whatever does more is asked for first.",
+        Keys::None, connected, |_| Command::OpenExamination),
     entry!(Device 3 "device.read-settings", "Read Settings…", "Reads the controller's settings, from what it works with or from its EEPROM.",
         key(Key::F8), settings_idle, |_| Command::OpenSheet(Sheet::Read)),
     entry!(Device 3 "device.default-settings", "Default Settings…", "Restores the factory settings on the controller.",

@@ -83,7 +83,10 @@ impl App {
                 Some(Origin { subject, keeper: TrialKeeper::new(settings.keeper()?) })
             };
             if let Some(next) = connection.tune.next(connection.link.arming, refused, origin) {
-                self.ask_next(id, next);
+                let is_taken = self.ask_next(id, Owner::Tune, next);
+                if let Some(connection) = self.model.connection_mut(id).filter(|_| !is_taken) {
+                    connection.tune.not_begun();
+                }
             }
             self.put_winding_back(id);
             self.follow_run(id);
@@ -107,23 +110,20 @@ impl App {
         Ok(())
     }
 
-    fn ask_next(&mut self, id: ConnectionId, next: Next) {
-        let is_taken = match next {
-            Next::Arm(scope) => {
-                if let Some(connection) = self.model.connection_mut(id) {
-                    connection.link.refusals.clear();
-                }
-                let is_taken = self.request_of(id, Request::Arm(scope));
-                if let Some(connection) = self.model.connection_mut(id).filter(|_| is_taken) {
-                    connection.link.arming = Arming::Asked(scope);
-                }
-                is_taken
-            }
-            Next::Job(job) => self.start_for(id, Owner::Tune, job),
+    /// Asks for the next part of a run that has several; whether the device thread took it.
+    pub(super) fn ask_next(&mut self, id: ConnectionId, owner: Owner, next: Next) -> bool {
+        let scope = match next {
+            Next::Arm(scope) => scope,
+            Next::Job(job) => return self.start_for(id, owner, job),
         };
-        if let Some(connection) = self.model.connection_mut(id).filter(|_| !is_taken) {
-            connection.tune.not_begun();
+        if let Some(connection) = self.model.connection_mut(id) {
+            connection.link.refusals.clear();
         }
+        let is_taken = self.request_of(id, Request::Arm(scope));
+        if let Some(connection) = self.model.connection_mut(id).filter(|_| is_taken) {
+            connection.link.arming = Arming::Asked(scope);
+        }
+        is_taken
     }
 
     fn apply_gains(&mut self, which: Loop) -> Result<(), Message> {

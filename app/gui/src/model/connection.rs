@@ -18,6 +18,7 @@ use brushwork_plant::world::{ScriptRun, WorldView};
 use brushwork_values::Motor;
 
 use super::drawer::Drawers;
+use super::examination::ExaminationPanel;
 use super::generator::Generator;
 use super::jobs::Jobs;
 use super::loop_settings::LoopView;
@@ -74,6 +75,8 @@ pub struct Connection {
     pub qpps: QppsPanel,
     /// Guided tuning.
     pub tune: Tuning,
+    /// The examination of the unit that is looked at.
+    pub examination: ExaminationPanel,
     /// What the screens that drive have open above their graphs.
     pub drawers: Drawers,
     pub loops: LoopView,
@@ -180,6 +183,7 @@ impl Connection {
             generator: Generator::default(),
             qpps: QppsPanel::default(),
             tune: Tuning::default(),
+            examination: ExaminationPanel::default(),
             drawers: Drawers::default(),
             loops: LoopView::default(),
             history: History::default(),
@@ -411,6 +415,14 @@ impl Connection {
                 self.script.take(event)
             }
             Owner::Tune => self.take_tuning(event),
+            Owner::Examination => {
+                if matches!(event, Event::JobEnded(_)) {
+                    // It writes settings and puts them back.
+                    self.settings.doubt();
+                }
+                self.examination.take(event);
+                Vec::new()
+            }
         }
     }
 
@@ -516,7 +528,8 @@ impl Connection {
 
     /// The link is gone, on request or not. A simulated world lives on. What there is to say of it is handed back.
     pub fn link_ended(&mut self) -> Vec<Effect> {
-        let effects = self.tune.link_ended();
+        let mut effects = self.tune.link_ended();
+        effects.extend(self.examination.link_ended());
         self.phase = Phase::Closed;
         self.jobs = Jobs::default();
         self.lost = std::mem::take(&mut self.link).lost_because.map(|text| Lost { text, noticed_s: None });

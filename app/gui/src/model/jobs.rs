@@ -16,6 +16,8 @@ pub enum Owner {
     Script,
     /// Guided tuning.
     Tune,
+    /// The examination of a controller.
+    Examination,
 }
 
 /// The jobs that were asked for and have not ended.

@@ -11,6 +11,7 @@ pub mod channels;
 pub mod connection;
 pub mod devices;
 pub mod drawer;
+pub mod examination;
 pub mod general;
 pub mod generator;
 pub mod guided;
@@ -153,7 +154,8 @@ impl Model {
     pub fn arm_scope(&self) -> Option<ArmScope> {
         let shows_settings = self.screen == Screen::GeneralSettings;
         let in_settings = || self.front.general.arm_scope().filter(|_| shows_settings);
-        self.screen.arm_scope().or_else(in_settings)
+        let examined = self.front.examination.arm_scope();
+        examined.or(self.screen.arm_scope()).or_else(in_settings)
     }
 
     /// Whether a unit has answered on the link in front.

@@ -10,6 +10,7 @@ use super::model::{Model, Phase};
 pub mod canopen;
 mod drawer;
 pub(super) mod drive;
+pub mod examination;
 pub mod face;
 pub(super) mod general;
 mod generator;

@@ -57,5 +57,6 @@ pub fn shell_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     help::help_ui(ui.ctx(), model, room);
     screens::face::all().for_each(|face| face.windows_ui(ui.ctx(), model, commands, room));
     screens::canopen::canopen_ui(ui.ctx(), model, commands, room);
+    screens::examination::examination_ui(ui.ctx(), model, commands, room);
     palette::palette_ui(ui.ctx(), model, commands);
 }

@@ -4,6 +4,7 @@ mod buses;
 mod clamp;
 mod debugger;
 mod echo;
+mod examination;
 mod functions;
 mod general;
 mod generator;

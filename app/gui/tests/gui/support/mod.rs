@@ -19,5 +19,6 @@ pub fn install_families() {
         &brushwork_mcp::McpSimulator,
         &brushwork_motion_mind::MotionMindSimulator,
     ]);
+    brushwork_family::examine::install(&[&brushwork_mcp::McpExaminer]);
     brushwork_gui::install(&[&brushwork_gui::mcp::Mcp, &brushwork_gui::motion_mind::MotionMind]);
 }
