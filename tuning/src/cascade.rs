@@ -49,8 +49,8 @@ impl Default for Cascade {
 impl Cascade {
     /// The steady state of a speed: `duty` is what it takes.
     #[must_use]
-    pub fn steady((gains, qpps): (&Gains, f64), feed_forward: bool, speed: f64, duty: f64) -> Self {
-        let forward = if feed_forward { speed } else { 0.0 };
+    pub fn steady((gains, qpps): (&Gains, f64), feed_forward: f64, speed: f64, duty: f64) -> Self {
+        let forward = feed_forward * speed;
         let i = gains.velocity.i;
         let integral = if i > 0.0 { (duty * qpps - forward) / i } else { 0.0 };
         Self { integral, ..Self::default() }
@@ -60,7 +60,7 @@ impl Cascade {
     pub fn tick(
         &mut self,
         gains: (&Gains, f64),
-        (feed_forward, tick_s): (bool, f64),
+        (feed_forward, tick_s): (f64, f64),
         setpoint: Setpoint,
         seen: &Seen<'_>,
     ) -> f64 {
@@ -76,7 +76,7 @@ impl Cascade {
     fn velocity(
         &mut self,
         (gains, qpps): (&Gains, f64),
-        (feed_forward, tick_s): (bool, f64),
+        (feed_forward, tick_s): (f64, f64),
         setpoint: f64,
         seen: &Seen<'_>,
     ) -> f64 {
@@ -85,7 +85,7 @@ impl Cascade {
         let slope = (error - self.last_error) / tick_s;
         self.last_error = error;
         self.integral += error * tick_s;
-        let forward = if feed_forward { setpoint } else { 0.0 };
+        let forward = feed_forward * setpoint;
         let wanted = (forward + gains.p * error + gains.i * self.integral + gains.d * slope) / qpps;
         let (lowest, highest) = seen.duty_bounds();
         let duty = wanted.clamp(lowest, highest);
@@ -99,7 +99,7 @@ impl Cascade {
     fn position(
         &mut self,
         (all, qpps): (&Gains, f64),
-        (feed_forward, tick_s): (bool, f64),
+        (feed_forward, tick_s): (f64, f64),
         (target, bound): (f64, f64),
         seen: &Seen<'_>,
     ) -> f64 {

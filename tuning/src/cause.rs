@@ -104,7 +104,9 @@ causes! {
     HeavyLoad "A constant load, a weight or a spring, pulls harder than friction holds: without drive the axis moves. Balance it, or \
         tune the position as PIV, whose integral carries the load.";
     /// The controller's loop follows no law that is known.
-    UnknownLaw "The controller's loop follows no law known to this program, so gains cannot be computed for it.";
+    UnknownLaw "The law of the controller's loop could not be measured, so gains cannot be computed for it.";
+    /// Nothing said how often the controller's loop computes.
+    RateUnknown "How often in a second the controller's loop computes could not be measured; the gains assume the usual rate.";
     /// The controller is not in the mode in which it can be tuned.
     WrongMode "The Motion Mind is not in mode 4 with an encoder, the only mode that takes both a duty and a position over the wire. \
         Set its switches to mode 4, clear PULSEFB, and switch it off and on.";

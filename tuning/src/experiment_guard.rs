@@ -101,7 +101,9 @@ pub struct ExperimentGuard<'a, L: Law> {
     pub options: GuardOptions,
     /// What the controller held at the start.
     pub setup: Setup<L>,
-    /// Properties of its law.
+    /// Its law, as far as it is known.
+    pub(crate) law: L,
+    /// Properties of that.
     pub(crate) facts: &'static Facts,
     /// Every poll.
     pub points: Vec<Point>,
@@ -140,11 +142,13 @@ impl<'a, L: Law> ExperimentGuard<'a, L> {
     pub fn new(axis: &'a mut dyn LoopAxis<L>, options: GuardOptions) -> Result<Self, Cause> {
         let setup = retried(|| axis.read_setup())?;
         let now = axis.now();
+        let law = L::default().of_unit(&setup.held);
         let mut guard = Self {
             axis,
             options,
             setup,
-            facts: L::default().of_unit(&setup.held).facts(),
+            law,
+            facts: law.facts(),
             points: Vec::new(),
             exchanges: Vec::new(),
             drives: Vec::new(),
@@ -343,7 +347,7 @@ impl<'a, L: Law> ExperimentGuard<'a, L> {
     /// Writes registers to RAM; they are put back unless the run keeps its own.
     pub fn write(&mut self, write: L::Write) -> Result<(), Cause> {
         self.gains_touched = true;
-        if let Some(step_duty) = L::step_duty(&write) {
+        if let Some(step_duty) = self.law.step_duty(&write) {
             self.monitor.hold(step_duty);
         }
         if self.facts.writes_at_rest {

@@ -120,7 +120,7 @@ impl<A: LeadingLaw, P: LawPart> Law for Both<A, P> {
         of_law!(self.rate_hz())
     }
 
-    fn feed_forward(&self) -> bool {
+    fn feed_forward(&self) -> f64 {
         of_law!(self.feed_forward())
     }
 
@@ -212,10 +212,10 @@ impl<A: LeadingLaw, P: LawPart> Law for Both<A, P> {
         }
     }
 
-    fn step_duty(write: &Self::Write) -> Option<f64> {
+    fn step_duty(&self, write: &Self::Write) -> Option<f64> {
         match write {
-            Either::First(write) => A::step_duty(write),
-            Either::Second(write) => P::Law::step_duty(write),
+            Either::First(write) => self.first.step_duty(write),
+            Either::Second(write) => self.second.law()?.step_duty(write),
         }
     }
 
@@ -252,6 +252,10 @@ impl<A: LeadingLaw, P: LawPart> Law for Both<A, P> {
             Some(law) => Self::second(law.of_motor(qpps, max_current_raw)),
             None => Self { first: self.first.of_motor(qpps, max_current_raw), ..*self },
         }
+    }
+
+    fn is_rate_known(findings: &Self::Findings) -> bool {
+        A::is_rate_known(findings)
     }
 
     fn found(&self, findings: &Self::Findings, is_position: bool) -> Option<Self> {

@@ -116,8 +116,8 @@ pub trait Law:
     fn tick_s(&self) -> f64 {
         1.0 / f64::from(self.rate_hz())
     }
-    /// Whether the setpoint's share of QPPS is added to the duty.
-    fn feed_forward(&self) -> bool;
+    /// How much of the setpoint over QPPS is added to the duty: 1 is all of it.
+    fn feed_forward(&self) -> f64;
     /// The limit of the duty by which the current is held, where it is not the current itself that is limited.
     fn duty_limit(&self) -> Option<DutyLimit> {
         None
@@ -166,7 +166,7 @@ pub trait Law:
     /// The same after a write.
     fn take(registers: &mut Self::Registers, write: &Self::Write);
     /// The duty that one count more in a tick makes, where a write changes it.
-    fn step_duty(_write: &Self::Write) -> Option<f64> {
+    fn step_duty(&self, _write: &Self::Write) -> Option<f64> {
         None
     }
     /// A write with its answer.
@@ -188,6 +188,12 @@ pub trait Law:
     #[must_use]
     fn found(&self, _findings: &Self::Findings, _is_position: bool) -> Option<Self> {
         None
+    }
+
+    /// Whether these findings say how often in a second the loop computes.
+    #[must_use]
+    fn is_rate_known(_findings: &Self::Findings) -> bool {
+        true
     }
 
     /// Why a controller cannot be tuned as it is set, if so.

@@ -30,6 +30,8 @@ const ENOUGH_READINGS: usize = 40;
 /// Readings that are multiples of a step, at the least, and how far they may be from it, counts/s: they are rounded.
 const LEAST_READINGS: usize = 6;
 const ROUNDING: f64 = 1.01;
+/// Readings nearer to each other than this are one and the same, counts/s.
+const LEAST_STEP: f64 = 20.0;
 /// The smallest reading may be so many steps.
 const MOST_STEPS: i32 = 8;
 
@@ -63,29 +65,48 @@ fn look<L: LawProbe>(guard: &mut ExperimentGuard<'_, L>) -> Result<LawFound<L>, 
     guard.progress("Checking the wiring with a little duty");
     let probe = run_probe(guard, 1.0)?;
     guard.progress("Reading the unfiltered speed while the motor creeps");
-    let mut speeds = Vec::new();
-    for direction in [1.0, -1.0] {
-        creep(guard, direction * (probe.start_duty + READING_DUTY), &mut speeds)?;
-        guard.come_to_rest()?;
-    }
+    let speed_step = speed_step(guard, probe.start_duty, READING_COUNTS)?;
     guard.progress("Finding out the law of the loop");
     let held = guard.setup.held;
     let findings = match guard.facts.can_be_probed {
         true => L::probe(guard, &held, &|write| write, probe.start_duty, true)?,
         false => None,
     };
-    Ok(LawFound { probe, findings, speed_step: step_of(&speeds) })
+    Ok(LawFound { probe, findings, speed_step })
+}
+
+/// Lets the motor creep to and fro, `counts` each way at the most, and gives the step of its unfiltered speed, counts/s: one count in the
+/// time that it is counted over. `None` where the readings have none, or there were too few.
+///
+/// # Errors
+/// Why the run ends.
+pub fn speed_step<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
+    start_duty: f64,
+    counts: f64,
+) -> Result<Option<f64>, Cause> {
+    let mut speeds = Vec::new();
+    for direction in [1.0, -1.0] {
+        creep(guard, direction * (start_duty + READING_DUTY), counts, &mut speeds)?;
+        guard.come_to_rest()?;
+    }
+    Ok(step_of(&speeds))
 }
 
 /// Reads the unfiltered speed until there are enough readings that are not 0, or the motor has gone far enough.
-fn creep<L: Law>(guard: &mut ExperimentGuard<'_, L>, duty: f64, speeds: &mut Vec<i32>) -> Result<(), Cause> {
+fn creep<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
+    duty: f64,
+    counts: f64,
+    speeds: &mut Vec<i32>,
+) -> Result<(), Cause> {
     guard.poll(false)?;
     let from = guard.points.last().map_or(0.0, |point| point.counts);
     let (until_s, enough) = (guard.now_s() + READING_S, speeds.len() + ENOUGH_READINGS);
     guard.duty(duty)?;
     while guard.now_s() < until_s && speeds.len() < enough {
         let point = guard.poll(false)?;
-        if point.is_some_and(|point| (point.counts - from).abs() > READING_COUNTS) {
+        if point.is_some_and(|point| (point.counts - from).abs() > counts) {
             break;
         }
         speeds.extend(Some(guard.raw_speed()?).filter(|speed| *speed != 0));
@@ -95,12 +116,15 @@ fn creep<L: Law>(guard: &mut ExperimentGuard<'_, L>, duty: f64, speeds: &mut Vec
 
 /// The largest step of which all readings are multiples.
 fn step_of(speeds: &[i32]) -> Option<f64> {
-    let smallest = speeds.iter().map(|speed| speed.abs()).min().filter(|_| speeds.len() >= LEAST_READINGS)?;
-    (1..=MOST_STEPS).map(|parts| f64::from(smallest) / f64::from(parts)).find_map(|guess| {
+    let mut sorted: Vec<f64> = speeds.iter().map(|speed| f64::from(speed.abs())).collect();
+    sorted.sort_by(f64::total_cmp);
+    let smallest = sorted.first().copied().filter(|_| speeds.len() >= LEAST_READINGS)?;
+    // A quick motor's readings are many steps each, but one from the next may be one.
+    let apart = sorted.windows(2).map(|pair| pair[1] - pair[0]).filter(|apart| *apart > LEAST_STEP);
+    let smallest = apart.fold(smallest, f64::min);
+    (1..=MOST_STEPS).map(|parts| smallest / f64::from(parts)).find_map(|guess| {
         // The larger readings tell it more finely.
         let mut step = guess;
-        let mut sorted: Vec<f64> = speeds.iter().map(|speed| f64::from(speed.abs())).collect();
-        sorted.sort_by(f64::total_cmp);
         for speed in &sorted {
             let steps = (speed / step).round();
             if (speed - steps * step).abs() > ROUNDING + 0.02 * step {
@@ -123,6 +147,7 @@ mod tests {
         assert_eq!(step_of(&[600, 900, 1500, 600, 2100, 900]), Some(300.0));
         let halves = step_of(&[312, 313, 625, 938, -312, 1250]).unwrap();
         assert!((halves - 312.5).abs() < 0.1, "{halves}");
+        assert_eq!(step_of(&[5400, 5700, 6000, 5700, -5400, 6300, 5700]), Some(300.0), "none is one step");
         assert_eq!(step_of(&[300, 300, 600]), None, "too few");
         assert_eq!(step_of(&[997, 1013, 1204, 1331, 871, 1483]), None);
     }

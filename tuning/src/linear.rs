@@ -51,7 +51,7 @@ impl DiscretePlant {
 #[derive(Clone, Debug)]
 pub struct LoopPlant {
     tick_s: f64,
-    feed_forward: bool,
+    feed_forward: f64,
     lag: Lag,
     plant: DiscretePlant,
     omega: Vec<f64>,
@@ -147,7 +147,7 @@ impl LoopPlant {
         }
         let by_position = gains.position.map_or(Complex::new(0.0, 0.0), |position| {
             let wanted = self.integral[n] * position.i + self.slope[n] * position.d + position.p;
-            let forward = if is_simple(gains) { 1.0 } else { f64::from(u8::from(self.feed_forward)) };
+            let forward = if is_simple(gains) { 1.0 } else { self.feed_forward };
             wanted * (by_speed + forward)
         });
         (by_speed, by_position)
@@ -178,7 +178,7 @@ impl LoopPlant {
             new_position_sum = unit(position_sum) + &new_sum * tick_s;
         }
         let velocity = gains.velocity;
-        let forward = if is_simple(gains) || self.feed_forward { 1.0 } else { 0.0 };
+        let forward = if is_simple(gains) { 1.0 } else { self.feed_forward };
         let duty = if is_simple(gains) {
             wanted / qpps
         } else {

@@ -48,16 +48,16 @@ impl Law for PlainLaw {
         self.rate_hz
     }
 
-    fn feed_forward(&self) -> bool {
-        self.feed_forward
+    fn feed_forward(&self) -> f64 {
+        f64::from(u8::from(self.feed_forward))
     }
 
     fn tick(&self, state: &mut Cascade, gains: (&Gains, f64), setpoint: Setpoint, seen: &Seen<'_>) -> f64 {
-        state.tick(gains, (self.feed_forward, self.tick_s()), setpoint, seen)
+        state.tick(gains, (self.feed_forward(), self.tick_s()), setpoint, seen)
     }
 
     fn steady(&self, gains: (&Gains, f64), speed: f64, duty: f64) -> Cascade {
-        Cascade::steady(gains, self.feed_forward, speed, duty)
+        Cascade::steady(gains, self.feed_forward(), speed, duty)
     }
 
     fn registers(

@@ -250,7 +250,11 @@ fn with_law<L: LawProbe>(
     let Some(findings) = found else { return Ok(*request) };
     report.law = Some(findings);
     let law = request.law.found(&findings, position).ok_or(Cause::UnknownLaw)?;
+    if !L::is_rate_known(&findings) {
+        report.causes.push(Cause::RateUnknown);
+    }
     report.request.law = law;
+    guard.law = law;
     Ok(Request { law, ..*request })
 }
 

@@ -2,8 +2,8 @@
 
 use crate::probe::{LawFindings, probe_law};
 use crate::registers::{
-    McpHeld, McpLaw, McpNote, McpRegisters, McpWrite, VELOCITY_SCALE, gains_of, position_registers,
-    velocity_gains, velocity_registers,
+    McpHeld, McpLaw, McpNote, McpRegisters, McpWrite, gains_of, position_registers, velocity_gains,
+    velocity_registers,
 };
 use crate::table;
 use brushwork_tuning::axis::AxisError;
@@ -18,8 +18,6 @@ use brushwork_tuning::setpoint::Setpoint;
 
 /// None of the firmware's law is public, so that a run finds it out.
 static FACTS: Facts = Facts { can_be_probed: true, ..CASCADE };
-/// Ticks per second: the usual.
-const TICKS_PER_S: f64 = 300.0;
 /// Position limits where neither the run nor the controller has any, counts.
 const WIDE: (i32, i32) = (-2_000_000_000, 2_000_000_000);
 
@@ -39,7 +37,7 @@ impl Law for McpLaw {
         self.rate_hz
     }
 
-    fn feed_forward(&self) -> bool {
+    fn feed_forward(&self) -> f64 {
         self.feed_forward
     }
 
@@ -100,10 +98,10 @@ impl Law for McpLaw {
         }
     }
 
-    fn step_duty(write: &McpWrite) -> Option<f64> {
+    fn step_duty(&self, write: &McpWrite) -> Option<f64> {
         let McpWrite::Velocity(registers) = write else { return None };
-        let gain = f64::from(registers.p) / VELOCITY_SCALE;
-        Some(gain * TICKS_PER_S / f64::from(registers.qpps.max(1)))
+        let gain = f64::from(registers.p) / self.velocity_scale;
+        Some(gain * f64::from(self.rate_hz) / f64::from(registers.qpps.max(1)))
     }
 
     fn note(write: McpWrite, answer: Result<(), AxisError>) -> McpNote {
@@ -122,6 +120,10 @@ impl Law for McpLaw {
 
     fn found(&self, findings: &LawFindings, is_position: bool) -> Option<Self> {
         findings.law(self, is_position)
+    }
+
+    fn is_rate_known(findings: &LawFindings) -> bool {
+        findings.is_rate_known()
     }
 
     fn keeping(registers: &McpRegisters) -> Vec<McpWrite> {
@@ -156,6 +158,6 @@ impl LawProbe for McpLaw {
 
 impl LeadingLaw for McpLaw {
     fn standing_in(rate_hz: u32) -> Self {
-        Self { rate_hz, per_tick: true, position_scale: 1.0, feed_forward: true }
+        Self { rate_hz, position_scale: 1.0, ..Self::default() }
     }
 }

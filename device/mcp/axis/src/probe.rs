@@ -8,6 +8,7 @@ use crate::registers::{McpLaw, McpWrite, PositionRegisters, VELOCITY_SCALE, Velo
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::experiment_guard::{ExperimentGuard, Point};
 use brushwork_tuning::law::Law;
+use brushwork_tuning::law_probe::speed_step;
 use serde::{Deserialize, Serialize};
 
 /// QPPS while probing: so high that the command is large beside whatever the motor still creeps.
@@ -23,6 +24,25 @@ const SUM_S: f64 = 0.16;
 const INTEGRALS: [f64; 2] = [0.012, 3.6];
 /// Counts of the position error.
 const ERROR_COUNTS: f64 = 60.0;
+/// What an integral should give over the duty itself where the first one tried gave too little to be read well, and what counts as nothing.
+const SUMMED: f64 = 0.5;
+const LEAST_SUMMED: f64 = 0.02;
+/// P registers tried where the first gives too little to be read, and the smallest share of the command that is read well.
+const FINER: f64 = 32.0;
+const LEAST_READ: f64 = 0.02;
+/// Position gains are made so many times larger, twice at the most, where they give no duty that can be read.
+const LARGER: f64 = 16.0;
+/// How far the motor may creep each way to tell the rate of the loop, counts, and what a travel has to have for it, in such ways.
+const CREEP_COUNTS: f64 = 300.0;
+const CREEPS_OF_ROOM: f64 = 8.0;
+/// The same on an axis that turns freely: as far as it takes.
+const FREE_COUNTS: f64 = 1e9;
+/// Loop rates that are believed, Hz; sums in a second below which they are no sums over ticks; ticks that an unfiltered speed is counted over.
+const BELIEVED_HZ: (f64, f64) = (50.0, 4_000.0);
+const LEAST_TICKS_PER_S: f64 = 20.0;
+const MOST_TICKS_COUNTED: f64 = 8.0;
+/// Highest share of the setpoint that is believed.
+const MOST_SHARE: f64 = 2.0;
 /// Loop rates, Hz, and position scales that are known.
 const RATES_HZ: [u32; 2] = [300, 625];
 const SCALES: [f64; 2] = [1024.0, 2048.0];
@@ -40,26 +60,96 @@ pub struct LawFindings {
     pub sums_per_s: f64,
     /// Wire value of a position gain of 1; `None` where it was not asked for, or the position loop gave no duty.
     pub position_scale: Option<f64>,
+    /// The step of the unfiltered speed, counts/s, where the sums do not tell the rate of the loop.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speed_step: Option<f64>,
+}
+
+/// When the loop computes and what I sums.
+struct Sums {
+    rate_hz: f64,
+    per_tick: bool,
+    integral_scale: f64,
 }
 
 impl LawFindings {
-    /// The law that gives these findings, with what was not looked at taken from `usual`; `None` when no known law does.
+    /// The law that gives these findings, with what was not looked at taken from `usual`; `None` where something could not be measured.
+    /// A figure near one that is known is taken to be that one.
     #[must_use]
     pub fn law(&self, usual: &McpLaw, position: bool) -> Option<McpLaw> {
-        let feed_forward = self.known_feed_forward()?;
-        if !self.is_proportional_known() {
+        let feed_forward = match self.known_feed_forward() {
+            Some(whole) => f64::from(u8::from(whole)),
+            None if self.feed_forward > 0.0 && self.feed_forward <= MOST_SHARE => self.feed_forward,
+            None => return None,
+        };
+        if self.proportional < LEAST_READ / FINER {
             return None;
         }
-        let (rate_hz, per_tick) = match self.known_timing()? {
-            Timing::PerTick { rate_hz } => (rate_hz, true),
-            Timing::PerSecond => (usual.rate_hz, false),
-        };
+        let is_usual = self.is_proportional_known();
+        let velocity_scale = if is_usual { VELOCITY_SCALE } else { VELOCITY_SCALE / self.proportional };
+        let Sums { rate_hz, per_tick, integral_scale } = self.sums(usual)?;
         let position_scale = match self.position_scale {
-            Some(_) => self.known_position_scale()?,
+            Some(found) => self.known_position_scale().unwrap_or(found),
             None if position => return None,
             None => usual.position_scale,
         };
-        Some(McpLaw { rate_hz, per_tick, position_scale, feed_forward })
+        let rate_hz = rate_hz.round() as u32;
+        Some(McpLaw { rate_hz, per_tick, position_scale, feed_forward, velocity_scale, integral_scale })
+    }
+
+    /// When the loop computes: by what I sums, by the step of the unfiltered speed, or by both. Gains may be scaled as P is, or I alone.
+    fn sums(&self, usual: &McpLaw) -> Option<Sums> {
+        let usual_hz = f64::from(usual.rate_hz);
+        let is_believed = |rate: f64| rate >= BELIEVED_HZ.0 && rate <= BELIEVED_HZ.1;
+        let step = self.speed_step.filter(|step| is_believed(*step));
+        if self.tells_rate()
+            && let Some(Timing::PerTick { rate_hz }) = self.known_timing()
+        {
+            return Some(Sums { rate_hz: rate_hz.into(), per_tick: true, integral_scale: VELOCITY_SCALE });
+        }
+        let per_second = |scale: f64| Sums {
+            rate_hz: step.unwrap_or(usual_hz),
+            per_tick: false,
+            integral_scale: VELOCITY_SCALE / scale,
+        };
+        if near(self.sums_per_s, 1.0) {
+            return Some(per_second(1.0));
+        }
+        if near(self.sums_per_s, self.proportional) {
+            return Some(per_second(self.sums_per_s));
+        }
+        let per_tick = |rate_hz: f64| {
+            let scale = self.sums_per_s / rate_hz;
+            let integral_scale = if near(scale, 1.0) { VELOCITY_SCALE } else { VELOCITY_SCALE / scale };
+            Sums { rate_hz, per_tick: true, integral_scale }
+        };
+        let guesses = [self.sums_per_s / self.proportional, self.sums_per_s];
+        match step {
+            // The unfiltered speed is counted over whole ticks.
+            Some(step) => {
+                let whole = |guess: &f64| {
+                    let ticks = (guess / step).round().clamp(1.0, MOST_TICKS_COUNTED);
+                    near(*guess, ticks * step).then_some(per_tick(ticks * step))
+                };
+                let scaled = || (self.sums_per_s > 0.0).then(|| per_tick(step));
+                guesses.iter().find_map(whole).or_else(scaled)
+            }
+            None => guesses.into_iter().find(|rate| is_believed(*rate)).map(per_tick).or_else(|| {
+                let is_slow = self.sums_per_s > LEAST_READ && self.sums_per_s < LEAST_TICKS_PER_S;
+                is_slow.then(|| per_second(self.sums_per_s))
+            }),
+        }
+    }
+
+    /// Whether what I sums says by itself how often in a second the loop computes.
+    fn tells_rate(&self) -> bool {
+        self.is_proportional_known() && matches!(self.known_timing(), Some(Timing::PerTick { .. }))
+    }
+
+    /// Whether anything says it.
+    #[must_use]
+    pub fn is_rate_known(&self) -> bool {
+        self.speed_step.is_some() || self.sums_per_s >= LEAST_TICKS_PER_S
     }
 
     /// Whether the setpoint's share of QPPS is added; `None` where it is neither whole nor nothing.
@@ -111,7 +201,7 @@ fn near(found: f64, known: f64) -> bool {
 }
 
 /// Looks at the loops of a motor that stands; `start_duty` is the duty that moves it, `held_limits` are the position limits, of a run that
-/// tunes the position. `None` where the controller reports no duty.
+/// tunes the position. Where the sums do not tell the rate of the loop, the motor creeps to and fro. `None` where the controller reports no duty.
 ///
 /// # Errors
 /// Says why the run ends.
@@ -126,22 +216,63 @@ pub fn probe_law<L: Law>(
     let speed = (duty * QPPS).round();
     let Some(feed) = duty_under(guard, speed, gains(0.0, 0.0))? else { return Ok(None) };
     let feed_forward = feed * QPPS / speed;
-    let Some(with_p) = duty_under(guard, speed, gains(1.0, 0.0))? else { return Ok(None) };
-    let proportional = (with_p - feed) * QPPS / speed;
+    let Some(proportional) = proportional_under(guard, speed, feed)? else { return Ok(None) };
     let mut sums_per_s = 0.0;
-    for integral in INTEGRALS {
+    let mut integral = INTEGRALS[0];
+    for _ in 0..2 {
         let share = growth_under(guard, speed, gains(0.0, integral))?;
         sums_per_s = share * QPPS / integral;
-        if share * speed * SUM_S > 0.15 * duty {
+        let summed = share * speed * SUM_S / duty;
+        if summed > 0.15 {
             break;
         }
+        integral = if summed < LEAST_SUMMED { INTEGRALS[1] } else { integral * SUMMED / summed };
     }
     let position_scale = match held_limits {
         Some(limits) => scale_under(guard, duty, limits)?,
         None => None,
     };
     guard.set(gains(0.0, 0.0))?;
-    Ok(Some(LawFindings { feed_forward, proportional, sums_per_s, position_scale }))
+    let mut found =
+        LawFindings { feed_forward, proportional, sums_per_s, position_scale, ..LawFindings::default() };
+    if !found.tells_rate() {
+        found.speed_step = rate_under(guard, start_duty)?;
+    }
+    Ok(Some(found))
+}
+
+/// The step of the unfiltered speed, where there is room to creep.
+fn rate_under<L: Law>(guard: &mut Probed<'_, '_, L>, start_duty: f64) -> Result<Option<f64>, Cause> {
+    let counts = match guard.room_counts() {
+        None => FREE_COUNTS,
+        Some(room) if room >= CREEPS_OF_ROOM * CREEP_COUNTS => CREEP_COUNTS,
+        Some(_) => return Ok(None),
+    };
+    guard.progress("Reading the unfiltered speed while the motor creeps");
+    speed_step(guard, start_duty, counts)
+}
+
+/// What a P register of 65536 multiplies the error with; once more with another register where the first gave far too little or too much.
+fn proportional_under<L: Law>(
+    guard: &mut Probed<'_, '_, L>,
+    speed: f64,
+    feed: f64,
+) -> Result<Option<f64>, Cause> {
+    let mut register = 1.0;
+    let mut found = 0.0;
+    for _ in 0..3 {
+        let Some(with_p) = duty_under(guard, speed, gains(register, 0.0))? else { return Ok(None) };
+        let read = (with_p - feed) * QPPS / speed;
+        found = read / register;
+        if near(read, 1.0) {
+            break;
+        }
+        register *= if read < LEAST_READ { FINER } else { 1.0 / read };
+        if !(1e-3..=FINER / LEAST_READ).contains(&register) {
+            break;
+        }
+    }
+    Ok(Some(found))
 }
 
 /// The motor with its loops as this law writes them.
@@ -222,10 +353,25 @@ fn under<L: Law>(
 fn scale_under<L: Law>(
     guard: &mut Probed<'_, '_, L>,
     duty: f64,
+    limits: (i32, i32),
+) -> Result<Option<f64>, Cause> {
+    let p = (1.6 * duty * QPPS * SCALES[0] / ERROR_COUNTS).round();
+    for larger in [1.0, LARGER, LARGER * LARGER] {
+        let found = scale_with(guard, larger * p, limits)?;
+        // With less than this the duty is too small to be read well.
+        if found.is_some_and(|scale| scale < 0.5 * LARGER * larger * SCALES[0]) {
+            return Ok(found);
+        }
+    }
+    Ok(None)
+}
+
+/// The same with a P register.
+fn scale_with<L: Law>(
+    guard: &mut Probed<'_, '_, L>,
+    p: f64,
     (min, max): (i32, i32),
 ) -> Result<Option<f64>, Cause> {
-    let wanted = 1.6 * duty;
-    let p = (wanted * QPPS * SCALES[0] / ERROR_COUNTS).round();
     let (min, max) = if min < max { (min, max) } else { (i32::MIN / 2, i32::MAX / 2) };
     guard.set(gains(0.0, 0.0))?;
     let registers = PositionRegisters { p: p as u32, min, max, ..PositionRegisters::default() };
@@ -262,22 +408,74 @@ mod tests {
             proportional: 0.99,
             sums_per_s: 303.0,
             position_scale: Some(1030.0),
+            speed_step: None,
         };
         assert_eq!(found.law(&usual, true), Some(usual));
         let other =
             LawFindings { feed_forward: 0.01, sums_per_s: 615.0, position_scale: Some(2_000.0), ..found };
-        let law = McpLaw { rate_hz: 625, per_tick: true, position_scale: 2048.0, feed_forward: false };
+        let law = McpLaw { rate_hz: 625, position_scale: 2048.0, feed_forward: 0.0, ..usual };
         assert_eq!(other.law(&usual, true), Some(law));
         let seconds = LawFindings { sums_per_s: 1.02, position_scale: None, ..found };
         assert_eq!(seconds.law(&usual, false), Some(McpLaw { per_tick: false, ..usual }));
         assert_eq!(seconds.law(&usual, true), None, "the position loop gave no duty");
         for unknown in [
-            LawFindings { feed_forward: 0.5, ..found },
-            LawFindings { proportional: 16.0, ..found },
-            LawFindings { sums_per_s: 150.0, ..found },
-            LawFindings { position_scale: Some(65_536.0), ..found },
+            LawFindings { feed_forward: -0.5, ..found },
+            LawFindings { proportional: 0.0, ..found },
+            LawFindings { sums_per_s: 0.0, ..found },
         ] {
             assert_eq!(unknown.law(&usual, true), None, "{unknown:?}");
+        }
+    }
+
+    #[test]
+    fn what_was_measured_is_the_law_also_where_no_firmware_is_known_to_have_it() {
+        let usual = McpLaw::default();
+        let found = LawFindings {
+            feed_forward: 1.0,
+            proportional: 1.0,
+            sums_per_s: 300.0,
+            position_scale: Some(1024.0),
+            speed_step: None,
+        };
+        let law = |findings: LawFindings| findings.law(&usual, true).expect("all of it was measured");
+        assert_eq!(law(LawFindings { feed_forward: 0.5, ..found }), McpLaw { feed_forward: 0.5, ..usual });
+        let scaled = law(LawFindings { position_scale: Some(65_536.0), ..found });
+        assert_eq!(scaled.position_scale, 65_536.0);
+        // Rates: by the sums alone, or with the step of the speed, which is counted over one tick or two.
+        for step in [None, Some(450.0), Some(225.0)] {
+            let law = law(LawFindings { sums_per_s: 450.0, speed_step: step, ..found });
+            assert_eq!(law, McpLaw { rate_hz: 450, ..usual }, "{step:?}");
+        }
+        // Over seconds: the step of the speed alone tells the rate.
+        for (step, rate_hz, is_known) in [(None, 300, false), (Some(1_000.0), 1_000, true)] {
+            let seconds = LawFindings { sums_per_s: 1.0, speed_step: step, ..found };
+            assert_eq!(law(seconds), McpLaw { rate_hz, per_tick: false, ..usual });
+            assert_eq!(seconds.is_rate_known(), is_known);
+        }
+        // P four times as strong, with I as it is and with I as strong, over ticks and over seconds.
+        let four = LawFindings { proportional: 4.0, speed_step: Some(500.0), ..found };
+        let scale = VELOCITY_SCALE / 4.0;
+        let cases = [(500.0, true, 1.0), (2_000.0, true, 4.0), (4.0, false, 4.0), (1.0, false, 1.0)];
+        for (sums_per_s, per_tick, integral) in cases {
+            let expected = McpLaw {
+                rate_hz: 500,
+                per_tick,
+                velocity_scale: scale,
+                integral_scale: VELOCITY_SCALE / integral,
+                ..usual
+            };
+            assert_eq!(law(LawFindings { sums_per_s, ..four }), expected, "{sums_per_s}");
+        }
+    }
+
+    #[test]
+    fn a_law_in_a_file_reads_back_and_the_usual_one_is_as_earlier_versions_wrote_it() {
+        let text = serde_json::to_string(&McpLaw::default()).unwrap();
+        assert_eq!(text, r#"{"rate_hz":300,"per_tick":true,"position_scale":1024.0,"feed_forward":true}"#);
+        let odd = McpLaw { feed_forward: 0.5, velocity_scale: 16_384.0, ..McpLaw::default() };
+        for law in [McpLaw::default(), odd, McpLaw { feed_forward: 0.0, ..odd }] {
+            let text = serde_json::to_string(&law).unwrap();
+            assert_eq!(serde_json::from_str::<McpLaw>(&text).unwrap(), law, "{text}");
         }
     }
 }

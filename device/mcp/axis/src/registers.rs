@@ -10,7 +10,8 @@ pub const VELOCITY_SCALE: f64 = 65_536.0;
 
 /// The firmware's law, as far as the tuner must know it.
 ///
-/// Assumed, since none of it is public: `duty = (feed_forward v + P e + I sum(e) + D diff(e)) / QPPS`. A run checks it.
+/// Assumed, since none of it is public: `duty = (feed_forward v + P e + I sum(e) + D diff(e)) / QPPS`. A run measures its figures, but
+/// for the scale of D, which is taken to be that of P.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct McpLaw {
     /// Loop rate, Hz.
@@ -19,14 +20,65 @@ pub struct McpLaw {
     pub per_tick: bool,
     /// Wire value of a position gain of 1.
     pub position_scale: f64,
-    /// Whether the setpoint's share of QPPS is added to the duty.
-    pub feed_forward: bool,
+    /// How much of the setpoint over QPPS is added to the duty: all of it is `true` in a file, none is `false`.
+    #[serde(with = "share")]
+    pub feed_forward: f64,
+    /// Wire value of a velocity P of 1.
+    #[serde(default = "usual_scale", skip_serializing_if = "is_usual_scale")]
+    pub velocity_scale: f64,
+    /// Wire value of a velocity I that adds the error once per tick, or per second.
+    #[serde(default = "usual_scale", skip_serializing_if = "is_usual_scale")]
+    pub integral_scale: f64,
+}
+
+fn usual_scale() -> f64 {
+    VELOCITY_SCALE
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
+fn is_usual_scale(scale: &f64) -> bool {
+    *scale == VELOCITY_SCALE
+}
+
+/// A share as files have it: reports of earlier versions know all or nothing.
+mod share {
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    #[derive(Deserialize)]
+    #[serde(untagged)]
+    enum Share {
+        Whole(bool),
+        Part(f64),
+    }
+
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
+    pub(super) fn serialize<S: Serializer>(share: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+        match *share {
+            1.0 => serializer.serialize_bool(true),
+            0.0 => serializer.serialize_bool(false),
+            part => serializer.serialize_f64(part),
+        }
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+        Ok(match Share::deserialize(deserializer)? {
+            Share::Whole(whole) => f64::from(u8::from(whole)),
+            Share::Part(part) => part,
+        })
+    }
 }
 
 impl Default for McpLaw {
     /// Assumed: 300 Hz, gains per tick, position gains x 1024, with feed-forward.
     fn default() -> Self {
-        Self { rate_hz: 300, per_tick: true, position_scale: 1024.0, feed_forward: true }
+        Self {
+            rate_hz: 300,
+            per_tick: true,
+            position_scale: 1024.0,
+            feed_forward: 1.0,
+            velocity_scale: VELOCITY_SCALE,
+            integral_scale: VELOCITY_SCALE,
+        }
     }
 }
 
@@ -109,8 +161,9 @@ pub enum McpNote {
 /// Velocity registers of an MCP or RoboClaw.
 #[must_use]
 pub fn velocity_registers(velocity: &Pid, qpps: f64, law: &McpLaw) -> VelocityRegisters {
-    let [p, i, d] = per_step(velocity, law).map(|gain| raw(gain, VELOCITY_SCALE));
-    VelocityRegisters { p, i, d, qpps: whole(qpps) }
+    let [p, i, d] = per_step(velocity, law);
+    let (scale, integral) = (law.velocity_scale, law.integral_scale);
+    VelocityRegisters { p: raw(p, scale), i: raw(i, integral), d: raw(d, scale), qpps: whole(qpps) }
 }
 
 /// The velocity gains that registers stand for.
@@ -118,9 +171,9 @@ pub fn velocity_registers(velocity: &Pid, qpps: f64, law: &McpLaw) -> VelocityRe
 pub fn velocity_gains(registers: &VelocityRegisters, law: &McpLaw) -> Pid {
     let step_s = law.tick_s() / law.gain_step();
     Pid {
-        p: f64::from(registers.p) / VELOCITY_SCALE,
-        i: f64::from(registers.i) / VELOCITY_SCALE / step_s,
-        d: f64::from(registers.d) / VELOCITY_SCALE * step_s,
+        p: f64::from(registers.p) / law.velocity_scale,
+        i: f64::from(registers.i) / law.integral_scale / step_s,
+        d: f64::from(registers.d) / law.velocity_scale * step_s,
     }
 }
 

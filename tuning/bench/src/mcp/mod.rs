@@ -1,5 +1,6 @@
 //! MCP and RoboClaw on the bench: motors that suit them, packet serial in virtual time, trials of their registers.
 
+pub mod laws;
 mod line;
 pub mod population;
 mod trial;

@@ -73,7 +73,8 @@ impl Unit for ControlLaw {
             rate_hz: specimen.unit.rate_hz,
             per_tick: specimen.unit.gain_timing == GainTiming::PerTick,
             position_scale: specimen.unit.position_gain_scale,
-            feed_forward: specimen.unit.feed_forward,
+            feed_forward: f64::from(u8::from(specimen.unit.feed_forward)),
+            ..McpLaw::default()
         };
         let filter_s = match specimen.unit.velocity_estimate {
             VelocityEstimate::LowPass { time_constant_s } => time_constant_s,

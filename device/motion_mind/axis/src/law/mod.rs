@@ -82,8 +82,8 @@ impl Law for MotionMindLaw {
         LOOPS_PER_S
     }
 
-    fn feed_forward(&self) -> bool {
-        true
+    fn feed_forward(&self) -> f64 {
+        1.0
     }
 
     fn duty_limit(&self) -> Option<DutyLimit> {
