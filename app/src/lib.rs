@@ -39,7 +39,7 @@ pub struct Family {
 
 /// The families that this program has. The one that is looked for first, and simulated where nothing else is named, is at the head. To add one,
 /// name it here.
-pub static FAMILIES: [Family; 3] = [
+pub static FAMILIES: [Family; 4] = [
     Family {
         driver: &brushwork_mcp_client::McpDriver,
         simulator: &brushwork_mcp::McpSimulator,
@@ -68,6 +68,17 @@ pub static FAMILIES: [Family; 3] = [
         examiner: None,
         window: &brushwork_gui::suprmotr::SuprMotr,
         commands: &brushwork_cli::suprmotr::SuprMotrCommands,
+        #[cfg(feature = "bench")]
+        judge: None,
+        #[cfg(feature = "bench")]
+        measures: &[],
+    },
+    Family {
+        driver: &brushwork_motorvator_client::MotorvatorDriver,
+        simulator: &brushwork_motorvator::MotorvatorSimulator,
+        examiner: None,
+        window: &brushwork_gui::motorvator::Motorvator,
+        commands: &brushwork_cli::mecc::MotorvatorCommands,
         #[cfg(feature = "bench")]
         judge: None,
         #[cfg(feature = "bench")]

@@ -19,7 +19,7 @@ pub mod guardian;
 pub mod interrupt;
 mod list;
 pub mod mcp;
-mod mecc;
+pub mod mecc;
 mod messages;
 mod monitor;
 pub mod motion_mind;
@@ -90,9 +90,9 @@ pub fn command_line() -> clap::Command {
     with_commands(&commands_of_families().collect::<Vec<_>>())
 }
 
-/// The commands of families, and that of the language whose boards are simulated alone.
+/// The commands of families.
 fn commands_of_families() -> impl Iterator<Item = Tool> {
-    family::families().iter().flat_map(|family| family.commands()).chain([mecc::tool()])
+    family::families().iter().flat_map(|family| family.commands())
 }
 
 fn with_commands(tools: &[Tool]) -> clap::Command {

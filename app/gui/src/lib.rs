@@ -27,6 +27,7 @@ pub mod mcp;
 pub mod messages;
 pub mod model;
 pub mod motion_mind;
+pub mod motorvator;
 pub mod opener;
 pub mod parts;
 pub mod remember;

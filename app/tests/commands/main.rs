@@ -16,6 +16,8 @@ mod cli_profiles;
 mod cli_settings;
 mod cli_several;
 mod diagnosis;
+mod motorvator;
+mod motorvator_sim;
 mod suprmotr;
 mod suprmotr_macros;
 mod suprmotr_sim;

@@ -16,6 +16,7 @@ pub mod failure;
 pub mod family;
 pub mod files;
 pub mod guardian;
+pub mod loader;
 pub mod loan;
 pub mod messages;
 pub mod settings;

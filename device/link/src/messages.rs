@@ -210,6 +210,9 @@ messages! {
     pub enum CauseMessage {
         NoWayIntoLoader "there is no way into its firmware loader from here",
         BytesNotTaken "bytes are not taken as they are here; put the command together by its number",
+        NoEncoder "it has no encoder whose count could be set",
+        NoEStop "it has no emergency stop that software could reset",
+        NoScripts "it has no script that this program could start or stop",
         EncodersUntold "this controller does not tell a job its encoders",
         PowerUntold "this controller does not tell a job what a motor draws",
         SpeedUntold "this controller does not tell a job its speed",

@@ -8,7 +8,7 @@ use brushwork_tests::rust_source::{code_lines, without_tests};
 use brushwork_tests::workspace::{self, DependencyKind, Member, Metadata};
 
 /// The arrows that ship: a crate and the crates of this workspace it may use.
-const ARROWS: [(&str, &[&str]); 33] = [
+const ARROWS: [(&str, &[&str]); 35] = [
     (
         "brushwork",
         &[
@@ -23,6 +23,8 @@ const ARROWS: [(&str, &[&str]); 33] = [
             "brushwork-mcp-wire",
             "brushwork-motion-mind",
             "brushwork-motion-mind-client",
+            "brushwork-motorvator",
+            "brushwork-motorvator-client",
             "brushwork-plant",
             "brushwork-script",
             "brushwork-suprmotr",
@@ -45,6 +47,8 @@ const ARROWS: [(&str, &[&str]); 33] = [
             "brushwork-motion-mind-client",
             "brushwork-motion-mind-sim",
             "brushwork-motion-mind-wire",
+            "brushwork-motorvator",
+            "brushwork-motorvator-client",
             "brushwork-motorvator-sim",
             "brushwork-motorvator-wire",
             "brushwork-plant",
@@ -85,6 +89,8 @@ const ARROWS: [(&str, &[&str]); 33] = [
             "brushwork-motion-mind-axis",
             "brushwork-motion-mind-client",
             "brushwork-motion-mind-wire",
+            "brushwork-motorvator-client",
+            "brushwork-motorvator-wire",
             "brushwork-plant",
             "brushwork-raster",
             "brushwork-script",
@@ -191,6 +197,19 @@ const ARROWS: [(&str, &[&str]); 33] = [
     ("brushwork-suprmotr-wire", &["brushwork-values"]),
     ("brushwork-suprmotr-client", &["brushwork-link", "brushwork-suprmotr-wire", "brushwork-values"]),
     ("brushwork-motorvator-wire", &[]),
+    ("brushwork-motorvator-client", &["brushwork-link", "brushwork-motorvator-wire", "brushwork-values"]),
+    (
+        "brushwork-motorvator",
+        &[
+            "brushwork-family",
+            "brushwork-link",
+            "brushwork-motorvator-client",
+            "brushwork-motorvator-sim",
+            "brushwork-motorvator-wire",
+            "brushwork-plant",
+            "brushwork-script",
+        ],
+    ),
     ("brushwork-motorvator-sim", &["brushwork-motorvator-wire", "brushwork-plant", "brushwork-script"]),
     ("brushwork-script", &[]),
     ("brushwork-values", &[]),
@@ -242,6 +261,8 @@ const TEST_ARROWS: [(&str, &[&str]); 4] = [
             "brushwork-mcp-sim",
             "brushwork-motion-mind",
             "brushwork-motion-mind-sim",
+            "brushwork-motorvator",
+            "brushwork-motorvator-sim",
         ],
     ),
     ("brushwork-packaging", &["brushwork-child"]),

@@ -73,12 +73,13 @@ fn tables_of_messages_stand_in_files_of_that_name() {
 }
 
 /// The crates whose sentences are all messages, and the names of fields that hold some.
-const TYPED: [&str; 7] = [
+const TYPED: [&str; 8] = [
     "device/link/",
     "device/family/",
     "device/mcp/client/",
     "device/motion_mind/client/",
     "device/suprmotr/client/",
+    "device/motorvator/client/",
     "app/core/",
     "app/gui/",
 ];

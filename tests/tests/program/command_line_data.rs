@@ -224,7 +224,7 @@ fn list_names_every_simulated_model() {
         .flatten()
         .filter_map(|row| row["connect"].as_str())
         .collect();
-    let keys = MODELS.iter().map(|model| model.key).chain(["motion-mind-3", "suprmotr-v9"]);
+    let keys = MODELS.iter().map(|model| model.key).chain(["motion-mind-3", "suprmotr-v9", "motorvator-3"]);
     let wanted: Vec<String> = keys.map(|key| format!("sim:{key}")).collect();
     assert_eq!(named, wanted);
     assert!(list["ports"].is_array());

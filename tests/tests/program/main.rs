@@ -22,6 +22,7 @@ mod motion_mind;
 mod motion_mind_drivers;
 mod motion_mind_foreign;
 mod motion_mind_link;
+mod motorvator_safety;
 mod python_package;
 mod script_command;
 mod scripts;

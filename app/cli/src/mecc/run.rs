@@ -5,15 +5,13 @@ use std::io::Read as _;
 use std::path::Path;
 use std::time::Duration;
 
-use brushwork_motorvator_sim::assumed::BYTE_TIME;
+use brushwork_motorvator_sim::assumed::byte_time;
 use brushwork_motorvator_sim::{Motorvator, What};
-use brushwork_motorvator_wire::parse_line_of_board;
-use brushwork_script::diagnostic::Severity;
-use brushwork_script::program::Program;
+use brushwork_motorvator_wire::{BITS_PER_SECOND, parse_line_of_board};
 
 use super::args::RunArgs;
+use super::language::compiled;
 use crate::messages::{CliMeccMessage, CliScriptMessage};
-use crate::scripts::Source;
 use crate::{Exit, Interrupt, NewFile, Output, Replace, say};
 
 /// How far the board goes between two looks at Ctrl-C.
@@ -27,7 +25,7 @@ enum Act {
 
 /// Runs the program to its end, its fault or the limit.
 pub fn run(args: &RunArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
-    let program = load(args)?;
+    let program = compiled(&args.file, args.quiet)?;
     let mut trace = Trace::new(args)?;
     let mut board = Motorvator::new(Some(program));
     board.trace();
@@ -67,24 +65,11 @@ pub fn run(args: &RunArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Ex
     }
 }
 
-fn load(args: &RunArgs) -> Result<Program, Exit> {
-    let source = Source::read(&args.file).map_err(|error| Exit::Failed.saying(error))?;
-    let (program, mut said) = (super::MECC.compile)(&source.text);
-    if args.quiet {
-        said.retain(|said| said.severity() == Severity::Error);
-    }
-    let page = source.rendered(&said);
-    if !page.is_empty() {
-        say(page.trim_end());
-    }
-    program.ok_or(Exit::ScriptWrong)
-}
-
 /// What is done to the board, in the order of time; a line is there when its last byte is.
 fn acts(args: &RunArgs) -> Vec<(Duration, Act)> {
     let lines = args.send.iter().map(|(at, line)| {
         let bytes = u32::try_from(line.len()).unwrap_or(u32::MAX).saturating_add(1);
-        (at.saturating_add(BYTE_TIME.saturating_mul(bytes)), Act::Line(line.clone()))
+        (at.saturating_add(byte_time(BITS_PER_SECOND).saturating_mul(bytes)), Act::Line(line.clone()))
     });
     let inputs = args.input.iter().map(|(at, input, on)| (*at, Act::Input(*input, *on)));
     let mut acts: Vec<(Duration, Act)> = lines.chain(inputs).collect();

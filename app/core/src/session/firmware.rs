@@ -9,9 +9,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use brushwork_link::loader::Loads;
 use brushwork_link::transport::{ConnectTarget, PortInfo, Transport, list_ports};
 use brushwork_link::{Failure, SystemClock};
-use brushwork_mcp_client::firmware::{Image, Left, Progress, SendError, Sent, send};
 use crossbeam_channel::{Receiver, Sender, bounded};
 
 use super::{Simulation, connect};
@@ -33,17 +33,17 @@ pub struct LoaderPlace {
 
 /// What an upload tells.
 #[derive(Clone, Debug)]
-pub enum UploadEvent {
+pub enum UploadEvent<F: Loads> {
     /// It goes on.
-    Progress(Progress),
+    Progress(F::Progress),
     /// It ended, well or not.
-    Ended(Result<Sent, Failure>),
+    Ended(Result<F::Sent, Failure>),
 }
 
 /// A running upload. Dropping it does not end it: there is no safe moment for that.
 #[derive(Debug)]
-pub struct Upload {
-    events: Receiver<UploadEvent>,
+pub struct Upload<F: Loads> {
+    events: Receiver<UploadEvent<F>>,
     cancelled: Arc<AtomicBool>,
 }
 
@@ -67,7 +67,7 @@ impl LoaderPlace {
     }
 
     /// Opens the line to the loader, waiting for it to appear.
-    fn open(&self, goes_on: &dyn Fn() -> bool) -> Result<Box<dyn Transport>, Failure> {
+    fn open<F: Loads>(&self, goes_on: &dyn Fn() -> bool) -> Result<Box<dyn Transport>, Failure> {
         let begun_at = Instant::now();
         let mut came_back = CoreCauseMessage::NoLoader.into();
         while goes_on() && begun_at.elapsed() < APPEAR_LIMIT {
@@ -78,9 +78,8 @@ impl LoaderPlace {
                 Err(why) => came_back = why,
             }
         }
-        let came_back = if goes_on() { came_back } else { Message::error(SendError::Cancelled) };
-        let remedy = Left::Untouched.remedy();
-        Err(Failure::new(CoreActMessage::OpenLoader, self.target.to_string(), came_back, remedy))
+        let came_back = if goes_on() { came_back } else { F::cancelled() };
+        Err(Failure::new(CoreActMessage::OpenLoader, self.target.to_string(), came_back, F::nothing_sent()))
     }
 
     fn look(&self) -> Result<Option<Box<dyn Transport>>, Message> {
@@ -103,17 +102,17 @@ impl LoaderPlace {
     }
 }
 
-impl Upload {
-    /// Starts to send `image`.
+impl<F: Loads> Upload<F> {
+    /// Starts to send firmware.
     ///
     /// # Errors
     /// The system gives no thread.
-    pub fn start(place: LoaderPlace, image: Image) -> Result<Self, UpdateMessage> {
+    pub fn start(place: LoaderPlace, firmware: F) -> Result<Self, UpdateMessage> {
         let (events, receiver) = bounded(64);
         let cancelled = Arc::new(AtomicBool::new(false));
         let seen = Arc::clone(&cancelled);
         let work = move || {
-            let ended = run(&place, &image, &seen, &events);
+            let ended = run(&place, &firmware, &seen, &events);
             // Nobody may be left to hear it.
             let _ = events.send(UploadEvent::Ended(ended));
         };
@@ -124,7 +123,7 @@ impl Upload {
 
     /// What it tells.
     #[must_use]
-    pub fn events(&self) -> &Receiver<UploadEvent> {
+    pub fn events(&self) -> &Receiver<UploadEvent<F>> {
         &self.events
     }
 
@@ -134,16 +133,16 @@ impl Upload {
     }
 }
 
-fn run(
+fn run<F: Loads>(
     place: &LoaderPlace,
-    image: &Image,
+    firmware: &F,
     cancelled: &AtomicBool,
-    events: &Sender<UploadEvent>,
-) -> Result<Sent, Failure> {
+    events: &Sender<UploadEvent<F>>,
+) -> Result<F::Sent, Failure> {
     let goes_on = || !cancelled.load(Ordering::SeqCst);
-    let mut transport = place.open(&goes_on)?;
+    let mut transport = place.open::<F>(&goes_on)?;
     let mut reported = None;
-    send(transport.as_mut(), &*SystemClock::shared(), image, &mut |progress| {
+    firmware.send(transport.as_mut(), &*SystemClock::shared(), &mut |progress| {
         // A window that does not look misses some pages, never the end.
         if reported != Some(progress) {
             let _ = events.try_send(UploadEvent::Progress(progress));
@@ -151,7 +150,6 @@ fn run(
         }
         goes_on()
     })
-    .map_err(|error| error.failure(transport.describe()))
 }
 
 /// The one port that belongs to a loader.

@@ -16,6 +16,7 @@ mod motion_mind;
 mod motion_mind_driving;
 mod motion_mind_kept;
 mod motion_mind_tuning;
+mod motorvator;
 mod pictures;
 mod pins;
 mod position;

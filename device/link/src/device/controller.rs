@@ -101,19 +101,34 @@ pub trait Controller: Send {
     }
 
     /// Sets an encoder's count.
-    fn set_encoder(&mut self, line: &mut Line<'_>, motor: Motor, counts: i32) -> Result<(), ExchangeError>;
+    fn set_encoder(
+        &mut self,
+        _line: &mut Line<'_>,
+        _motor: Motor,
+        _counts: i32,
+    ) -> Result<(), ExchangeError> {
+        Err(ExchangeError::impossible(CauseMessage::NoEncoder))
+    }
 
-    /// Sets all encoders' counts to zero.
-    fn zero_encoders(&mut self, line: &mut Line<'_>) -> Result<(), ExchangeError>;
+    /// Sets all encoders' counts to zero; those of a unit with one motor by setting that one's.
+    fn zero_encoders(&mut self, line: &mut Line<'_>) -> Result<(), ExchangeError> {
+        self.set_encoder(line, Motor::M1, 0)
+    }
 
     /// Resets an E-stop.
-    fn reset_estop(&mut self, line: &mut Line<'_>) -> Result<(), ExchangeError>;
+    fn reset_estop(&mut self, _line: &mut Line<'_>) -> Result<(), ExchangeError> {
+        Err(ExchangeError::impossible(CauseMessage::NoEStop))
+    }
 
     /// Starts the stored script.
-    fn start_script(&mut self, line: &mut Line<'_>) -> Result<(), ExchangeError>;
+    fn start_script(&mut self, _line: &mut Line<'_>) -> Result<(), ExchangeError> {
+        Err(ExchangeError::impossible(CauseMessage::NoScripts))
+    }
 
     /// Stops the running script.
-    fn stop_script(&mut self, line: &mut Line<'_>) -> Result<(), ExchangeError>;
+    fn stop_script(&mut self, _line: &mut Line<'_>) -> Result<(), ExchangeError> {
+        Err(ExchangeError::impossible(CauseMessage::NoScripts))
+    }
 
     /// Sends the unit into its firmware loader, after which it understands nothing of this family any more. The user has accepted
     /// the risk.
@@ -151,13 +166,17 @@ pub trait Controller: Send {
 
     /// Speaks to another address from now on, since the unit has just been given it. `false` if the family has no such
     /// address.
-    fn set_address(&mut self, address: u8) -> bool;
+    fn set_address(&mut self, _address: u8) -> bool {
+        false
+    }
 
     /// Whether a command can set a motor in motion.
     fn can_move(&self, command: u8) -> bool;
 
     /// Whether a command starts a script.
-    fn starts_script(&self, command: u8) -> bool;
+    fn starts_script(&self, _command: u8) -> bool {
+        false
+    }
 
     /// Whether a command can undo what [`Controller::check_arming`] found, so that it disarms.
     fn undermines_arming(&self, command: u8) -> bool;

@@ -58,8 +58,6 @@ messages! {
         AllAddresses "addresses 1 to 98",
         OneMotor "it has one motor, motor 1",
         SecondMotor "a Motion Mind has one motor",
-        NoEStop "a Motion Mind has no emergency stop that software could reset; its brake input ends by itself",
-        NoScripts "a Motion Mind has no scripts",
         NoCommand { command: u8, count: usize } "a Motion Mind has no command {command:#04X} with {count} values that fit",
         DutyOutside "a duty is from -100 % to 100 %",
         SpeedOutside "the speed is more than 32,767 counts per PID loop",

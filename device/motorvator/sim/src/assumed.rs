@@ -5,8 +5,12 @@ use std::time::Duration;
 /// What an instruction of a program takes: 50,000 a second, as an interpreter on a small controller runs them. Assumed.
 pub const INSTRUCTION_TIME: Duration = Duration::from_micros(20);
 
-/// What a byte takes on the line: 10 bits at 9600 baud. Assumed, see `brushwork_motorvator_wire::BITS_PER_SECOND`.
-pub const BYTE_TIME: Duration = Duration::from_nanos(1_041_667);
+/// What a byte takes on the line: 10 bits. Assumed, as the rate is, see `brushwork_motorvator_wire::BITS_PER_SECOND`.
+#[must_use]
+pub fn byte_time(bits_per_second: u32) -> Duration {
+    let rate = u64::from(bits_per_second.max(1));
+    Duration::from_nanos((10_000_000_000 + rate / 2) / rate)
+}
 
 /// Parts of a second that the waits of ConfigStepper count, those of GetClock. Assumed: "how long to wait" has no unit.
 pub const STEP_TICKS_PER_SECOND: u32 = 1024;

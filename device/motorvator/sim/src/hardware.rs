@@ -1,9 +1,9 @@
 //! What a program finds on the board: display, beeper, motors, steppers, servos, inputs, timers and the serial line.
 
-use super::assumed::BYTE_TIME;
+use super::assumed::byte_time;
 use super::happening::{Happening, What};
 use super::stepper::Stepper;
-use brushwork_motorvator_wire::{FRAME_BYTES, Frame, line_of_board};
+use brushwork_motorvator_wire::{BITS_PER_SECOND, FRAME_BYTES, Frame, line_of_board};
 use brushwork_script::board::Board;
 use brushwork_script::mcl::ast::Motion;
 use brushwork_script::mcl::registers::RegisterId;
@@ -36,6 +36,8 @@ pub struct ServoOutput {
 #[derive(Clone, Debug)]
 pub struct Hardware {
     pub(crate) now: Duration,
+    /// Of its serial line.
+    pub(crate) bits_per_second: u32,
     /// When the program began, for the trace.
     pub(crate) begun: Duration,
     pub(crate) display: [u8; 2],
@@ -59,6 +61,7 @@ impl Default for Hardware {
     fn default() -> Self {
         Self {
             now: Duration::ZERO,
+            bits_per_second: BITS_PER_SECOND,
             begun: Duration::ZERO,
             display: *b"  ",
             beep: None,
@@ -252,7 +255,7 @@ impl Host for Hardware {
         if !lost {
             let line = line_of_board(&frame);
             let length = u32::try_from(line.len()).unwrap_or(0);
-            self.sending = Some((self.now + BYTE_TIME * length, line));
+            self.sending = Some((self.now + byte_time(self.bits_per_second) * length, line));
         }
     }
 

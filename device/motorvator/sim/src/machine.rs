@@ -3,7 +3,6 @@
 use super::assumed::ON_BELOW_VOLTS;
 use super::rotor::{Rotor, RotorParams};
 use super::unit::Motorvator;
-use brushwork_motorvator_wire::BITS_PER_SECOND;
 use brushwork_plant::ParamsError;
 use brushwork_plant::bridge::BridgeOutput;
 use brushwork_plant::machine::{Machine, StreamIndex};
@@ -45,6 +44,11 @@ impl DrivenMotorvator {
     #[must_use]
     pub fn board(&self) -> &Motorvator {
         &self.board
+    }
+
+    /// The same, to be changed.
+    pub fn board_mut(&mut self) -> &mut Motorvator {
+        &mut self.board
     }
 
     /// Steps that each stepper has lost.
@@ -109,7 +113,7 @@ impl Machine for DrivenMotorvator {
     }
 
     fn bits_per_second(&self, _: StreamIndex) -> u32 {
-        BITS_PER_SECOND
+        self.board.bits_per_second()
     }
 
     fn units(&self) -> usize {

@@ -1,6 +1,6 @@
 //! The board: bytes and time in, bytes out.
 
-use super::assumed::{BYTE_TIME, HELP, INSTRUCTION_TIME, UNKNOWN_INSTRUCTION};
+use super::assumed::{HELP, INSTRUCTION_TIME, UNKNOWN_INSTRUCTION, byte_time};
 use super::happening::{Happening, What};
 use super::hardware::Hardware;
 use brushwork_motorvator_wire::{LineReader, Order};
@@ -32,6 +32,19 @@ impl Motorvator {
     #[must_use]
     pub fn new(program: Option<Program>) -> Self {
         Self { program: program.map(Arc::new), ..Self::default() }
+    }
+
+    /// The same with a line of another rate.
+    #[must_use]
+    pub fn at_rate(mut self, bits_per_second: u32) -> Self {
+        self.hardware.bits_per_second = bits_per_second;
+        self
+    }
+
+    /// Bits per second of its line.
+    #[must_use]
+    pub fn bits_per_second(&self) -> u32 {
+        self.hardware.bits_per_second
     }
 
     /// Its own time since its start.
@@ -145,10 +158,12 @@ impl Motorvator {
 
     /// The power comes: everything is as at the start but the program in memory and the time.
     pub fn power_up(&mut self) {
-        let is_traced = self.hardware.is_traced;
-        let (now, program) = (self.now(), self.program.take());
+        let Hardware { now, is_traced, bits_per_second, .. } = self.hardware;
+        let program = self.program.take();
         *self = Self { program, ..Self::default() };
-        (self.hardware.now, self.hardware.is_traced) = (now, is_traced);
+        self.hardware.now = now;
+        self.hardware.is_traced = is_traced;
+        self.hardware.bits_per_second = bits_per_second;
     }
 
     /// Lets time pass without power.
@@ -178,7 +193,8 @@ impl Motorvator {
     fn say(&mut self, text: &str) {
         let from = self.output.back().map_or(self.now(), |(at, _)| *at).max(self.now());
         let length = u32::try_from(text.len()).unwrap_or(0);
-        self.output.push_back((from + BYTE_TIME * length, text.as_bytes().to_vec()));
+        let byte_time = byte_time(self.hardware.bits_per_second);
+        self.output.push_back((from + byte_time * length, text.as_bytes().to_vec()));
     }
 
     /// When the next output that is already decided leaves.

@@ -7,6 +7,9 @@
 
 #![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
 
+pub mod host;
+pub mod reference;
+
 use std::fmt::Write as _;
 
 /// Bytes of a frame.

@@ -60,8 +60,6 @@ messages! {
         SmUntold "a SuprMotr takes it with SM and reports it by no command",
         OneMotor "it has one axis, motor 1",
         SecondMotor "a SuprMotr has one motor",
-        NoEStop "a SuprMotr has no emergency stop that software could reset",
-        NoScripts "the macros of a SuprMotr are run by MC, not as a script",
         NoCommand { command: u8, count: usize } "a SuprMotr has no command {command} with {count} values that fit",
         MovesAlone "a SuprMotr takes moves and nothing else: a position or a distance",
         TooFar { counts: i64 } "the target would be {counts} counts from 0; a SuprMotr moves within 1,073,741,823 on both sides",

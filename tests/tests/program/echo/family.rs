@@ -19,7 +19,7 @@ use brushwork_link::unit::{FirmwareGeneration, UnitAddress};
 use brushwork_link::{Driver, Failure, Stream, Wire};
 use brushwork_plant::machine::{Machine, StreamIndex};
 use brushwork_plant::world::{WorldAction, WorldView};
-use brushwork_values::{Field, Kind as ValueKind, Motor, Severity, Unit, Value, Values};
+use brushwork_values::{Field, Kind as ValueKind, Severity, Unit, Value, Values};
 use std::sync::LazyLock;
 use std::time::Duration;
 
@@ -357,26 +357,6 @@ impl Controller for EchoUnit {
         Ok(ArmCheck { reasons: Vec::new(), controller_timeout, warnings: Vec::new() })
     }
 
-    fn set_encoder(&mut self, _: &mut Line<'_>, _: Motor, _: i32) -> Result<(), ExchangeError> {
-        impossible()
-    }
-
-    fn zero_encoders(&mut self, _: &mut Line<'_>) -> Result<(), ExchangeError> {
-        impossible()
-    }
-
-    fn reset_estop(&mut self, _: &mut Line<'_>) -> Result<(), ExchangeError> {
-        impossible()
-    }
-
-    fn start_script(&mut self, _: &mut Line<'_>) -> Result<(), ExchangeError> {
-        impossible()
-    }
-
-    fn stop_script(&mut self, _: &mut Line<'_>) -> Result<(), ExchangeError> {
-        impossible()
-    }
-
     fn transact(
         &mut self,
         line: &mut Line<'_>,
@@ -397,15 +377,7 @@ impl Controller for EchoUnit {
         }
     }
 
-    fn set_address(&mut self, _: u8) -> bool {
-        false
-    }
-
     fn can_move(&self, _: u8) -> bool {
-        false
-    }
-
-    fn starts_script(&self, _: u8) -> bool {
         false
     }
 

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use brushwork_link::device::{PollRate, RiskAccepted};
 use brushwork_link::{ConnectTarget, Event, Request};
-use brushwork_mcp_client::firmware::{Progress, RESUME_NOTE, Sent, risks, suit, suit_model};
+use brushwork_mcp_client::firmware::{Firmware, Progress, RESUME_NOTE, Sent, risks, suit, suit_model};
 use brushwork_mcp_wire::loader::Image;
 use brushwork_mcp_wire::models;
 use crossbeam_channel::RecvTimeoutError;
@@ -177,7 +177,7 @@ fn enter_loader(controller: &Controller<'_>, interrupt: &Interrupt) -> Result<()
 
 /// Sends it and shows how far it is, until it ends. Ctrl-C counts only before the erase.
 fn send(place: LoaderPlace, image: Image, interrupt: &Interrupt) -> Result<Sent, Exit> {
-    let upload = Upload::start(place, image)
+    let upload = Upload::start(place, Firmware(image))
         .map_err(|why| Exit::Failed.saying(CoreStatusMessage::Because { why: why.into() }))?;
     let mut shown = String::new();
     let mut warned = false;

@@ -9,7 +9,9 @@ use std::time::{Duration, Instant};
 use brushwork_link::device::{Event, Identity, Job, JobTicket, QueuedJob};
 use brushwork_link::settings::{ReadReport, Subject, read_all};
 use brushwork_link::transport::Stream;
-use brushwork_mcp_client::firmware::{Progress, RESUME_NOTE, Sent, Unsuitable, risks, suit, suit_model};
+use brushwork_mcp_client::firmware::{
+    Firmware as Loaded, Progress, RESUME_NOTE, Sent, Unsuitable, risks, suit, suit_model,
+};
 use brushwork_mcp_wire::loader::Image;
 use brushwork_mcp_wire::models::{self, Model};
 use crossbeam_channel::{Receiver, bounded};
@@ -73,7 +75,7 @@ pub enum Stage {
     },
     /// The image goes over.
     Sending {
-        upload: Upload,
+        upload: Upload<Loaded>,
         progress: Progress,
     },
     Done(Sent),
@@ -415,7 +417,7 @@ impl Firmware {
     }
 
     fn send(&mut self, image: Image, place: LoaderPlace) {
-        self.stage = match Upload::start(place, image) {
+        self.stage = match Upload::start(place, Loaded(image)) {
             Ok(upload) => Stage::Sending { upload, progress: Progress::Greeting },
             Err(why) => Stage::Failed(FirmwareMessage::CannotSend { why: why.into() }.into()),
         };

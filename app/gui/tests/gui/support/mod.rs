@@ -7,6 +7,7 @@ pub mod causes;
 pub mod cpu;
 pub mod line;
 pub mod lockstep;
+pub mod one;
 pub mod wait;
 
 /// Names the families that this window's tests have.

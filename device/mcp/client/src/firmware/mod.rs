@@ -6,12 +6,14 @@
 
 mod check;
 mod error;
+mod loads;
 mod risk;
 mod send;
 
 pub use brushwork_mcp_wire::loader::Image;
 pub use check::{Unsuitable, suit, suit_model};
 pub use error::{Left, SendError};
+pub use loads::Firmware;
 pub use risk::risks;
 pub use send::{Progress, Sent, send};
 

@@ -80,22 +80,6 @@ impl Controller for MotionMind {
         self.speaker.ask(line, &command).map(drop)
     }
 
-    fn zero_encoders(&mut self, line: &mut Line<'_>) -> Result<(), ExchangeError> {
-        self.set_encoder(line, Motor::M1, 0)
-    }
-
-    fn reset_estop(&mut self, _: &mut Line<'_>) -> Result<(), ExchangeError> {
-        impossible(MotionMindCauseMessage::NoEStop)
-    }
-
-    fn start_script(&mut self, _: &mut Line<'_>) -> Result<(), ExchangeError> {
-        impossible(MotionMindCauseMessage::NoScripts)
-    }
-
-    fn stop_script(&mut self, _: &mut Line<'_>) -> Result<(), ExchangeError> {
-        impossible(MotionMindCauseMessage::NoScripts)
-    }
-
     fn transact(
         &mut self,
         line: &mut Line<'_>,
@@ -138,10 +122,6 @@ impl Controller for MotionMind {
 
     fn can_move(&self, command: u8) -> bool {
         matches!(effect(command), Some(Effect::Motion | Effect::RelativeMotion))
-    }
-
-    fn starts_script(&self, _command: u8) -> bool {
-        false
     }
 
     fn undermines_arming(&self, command: u8) -> bool {

@@ -42,7 +42,7 @@ fn it_compiles_with_no_error_and_warns_of_what_it_does_on_purpose() {
 #[test]
 fn every_order_is_answered_with_its_number() {
     let mut bench = bench();
-    assert_eq!(ask(&mut bench, b"P\x07", 0.05), [[b'P', 7, 1, 0, 0, 0, 0]]);
+    assert_eq!(ask(&mut bench, b"P\x07", 0.05), [[b'P', 7, 2, 0, 0, 0, 0]]);
     assert_eq!(ask(&mut bench, b"S\x08", 0.05), [[b'S', 8, 0, 0, 0, 0, 0]]);
     assert_eq!(ask(&mut bench, b"?\x09", 0.05), [[b'?', 9, 0, 0, 0, 0, 64]]);
     assert_eq!(ask(&mut bench, b"S\x0A", 0.05), [[b'S', 10, 0, 0, 0, 0, 0]]);
@@ -97,5 +97,33 @@ fn an_order_that_comes_while_an_answer_is_under_way_is_answered_after_it() {
     let from = bench.board.now().as_secs_f64();
     bench.board.receive(&line_of_host(b"P\x01"));
     bench.run(from + 0.01);
-    assert_eq!(ask(&mut bench, b"P\x02", 0.1), [[b'P', 1, 1, 0, 0, 0, 0], [b'P', 2, 1, 0, 0, 0, 0]]);
+    assert_eq!(ask(&mut bench, b"P\x02", 0.1), [[b'P', 1, 2, 0, 0, 0, 0], [b'P', 2, 2, 0, 0, 0, 0]]);
+}
+
+#[test]
+fn it_tells_every_half_second_that_it_runs_while_nobody_asks() {
+    let mut bench = Bench::new(HOST);
+    bench.run(1.2);
+    assert_eq!(bench.sent(), ["073082066000002000000000000"; 3]);
+    // Not while orders come.
+    for number in 0..5 {
+        assert_eq!(ask(&mut bench, &[b'S', number], 0.3).len(), 1);
+    }
+}
+
+#[test]
+fn steppers_display_inputs_and_analog_inputs_are_told() {
+    let mut bench = bench();
+    assert_eq!(ask(&mut bench, &[b'Q', 1, 2], 0.05), [[b'Q', 1, 2, 10, 20, 0, 0]]);
+    assert_eq!(ask(&mut bench, &[b'C', 2, 2, 3, 5, 40], 0.05), [[b'C', 2, 2, 3, 5, 40, 0]]);
+    assert_eq!(ask(&mut bench, &[b'Q', 3, 2], 0.05), [[b'Q', 3, 2, 3, 5, 40, 0]]);
+    assert_eq!(ask(&mut bench, &[b'Q', 4, 1], 0.05), [[b'Q', 4, 1, 10, 20, 0, 0]]);
+    bench.board.set_on_off(3, true);
+    assert_eq!(ask(&mut bench, b"D\x05", 0.05), [[b'D', 5, b'H', b'2', 4, 0, 0]]);
+    assert_eq!(ask(&mut bench, b"D\x06OK", 0.05), [[b'D', 6, b'O', b'K', 4, 0, 0]]);
+    assert_eq!(bench.board.display(), *b"OK");
+    bench.board.set_on_off(3, false);
+    bench.board.set_analog(2, 77);
+    assert_eq!(ask(&mut bench, b"D\x07", 0.05), [[b'D', 7, b'O', b'K', 0, 0, 0]]);
+    assert_eq!(ask(&mut bench, &[b'A', 8, 1], 0.05), [[b'A', 8, 0, 77, 0, 0, 0]]);
 }

@@ -67,22 +67,6 @@ impl Controller for SuprMotr {
         }
     }
 
-    fn zero_encoders(&mut self, line: &mut Line<'_>) -> Result<(), ExchangeError> {
-        self.set_encoder(line, Motor::M1, 0)
-    }
-
-    fn reset_estop(&mut self, _: &mut Line<'_>) -> Result<(), ExchangeError> {
-        impossible(SuprMotrCauseMessage::NoEStop)
-    }
-
-    fn start_script(&mut self, _: &mut Line<'_>) -> Result<(), ExchangeError> {
-        impossible(SuprMotrCauseMessage::NoScripts)
-    }
-
-    fn stop_script(&mut self, _: &mut Line<'_>) -> Result<(), ExchangeError> {
-        impossible(SuprMotrCauseMessage::NoScripts)
-    }
-
     fn transact(
         &mut self,
         line: &mut Line<'_>,
@@ -122,10 +106,6 @@ impl Controller for SuprMotr {
 
     fn can_move(&self, command: u8) -> bool {
         Mnemonic::from_number(command).is_some_and(|mnemonic| mnemonic.row().effect.may_move())
-    }
-
-    fn starts_script(&self, _command: u8) -> bool {
-        false
     }
 
     fn undermines_arming(&self, command: u8) -> bool {

@@ -1,0 +1,61 @@
+//! What a MotorVator has of its own in the window: its steppers and its terminal.
+
+pub mod family;
+pub mod search;
+pub mod stepper;
+pub mod terminal;
+
+use brushwork_link::Event;
+use brushwork_motorvator_client::Half;
+
+use crate::family::Own;
+use crate::model::Connection;
+use stepper::Stepper;
+use terminal::Terminal;
+
+/// The state of its screens.
+#[derive(Debug, Default)]
+pub struct MotorvatorConnection {
+    pub stepper: Stepper,
+    pub terminal: Terminal,
+    /// Which half of the board is selected.
+    half: Option<Half>,
+}
+
+impl Own for MotorvatorConnection {
+    fn take(&mut self, event: &Event) -> bool {
+        if let Event::Selected { address, .. } = event {
+            self.half = Half::of(*address);
+        }
+        self.terminal.note(event);
+        self.stepper.take(event, self.half)
+    }
+
+    fn rest(&mut self) {
+        self.stepper.rest();
+    }
+
+    fn forget_unit(&mut self) {
+        self.stepper = Stepper::default();
+    }
+
+    fn link_ended(&mut self) {
+        self.stepper.give_up();
+        self.terminal.link_ended();
+    }
+
+    fn not_sent(&mut self, id: u64) {
+        self.terminal.not_sent(id);
+    }
+}
+
+impl Connection {
+    /// What is kept of a MotorVator.
+    pub fn motorvator(&self) -> &MotorvatorConnection {
+        self.own()
+    }
+
+    pub fn motorvator_mut(&mut self) -> &mut MotorvatorConnection {
+        self.own_mut()
+    }
+}

@@ -1,0 +1,177 @@
+//! The terminal: a line as it goes out, or bytes that become triplets, what it means, and what came back in words.
+
+use std::collections::VecDeque;
+
+use brushwork_link::device::Event;
+use brushwork_motorvator_client::{describe_received, describe_sent};
+use brushwork_motorvator_wire::{FRAME_BYTES, LINE_END, line_of_host};
+
+use crate::command::Command;
+
+/// Lines kept; the oldest go first.
+const KEPT: usize = 500;
+/// Answers to the terminal's lines begin with this number.
+const FIRST_ID: u64 = 1 << 44;
+
+/// One line with its answer.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Entry {
+    id: u64,
+    /// As it went out, without its end.
+    pub sent: String,
+    /// In words.
+    pub meaning: String,
+    /// What came back: as it came, and in words; or why nothing was sent.
+    pub answer: Option<Result<(String, String), String>>,
+}
+
+/// The state of the screen.
+#[derive(Debug, Default)]
+pub struct Terminal {
+    pub typed: String,
+    pub entries: VecDeque<Entry>,
+    asked: u64,
+}
+
+/// The line that a text stands for, its end included: G, H and I as they are, else bytes as numbers and texts in quotes.
+///
+/// # Errors
+/// A sentence: it is none.
+pub fn line_of(typed: &str) -> Result<Vec<u8>, String> {
+    let typed = typed.trim();
+    if typed.is_empty() {
+        return Err("Type G, H, I001002003, or bytes such as 1 2 3 or \"TX\" 5.".to_owned());
+    }
+    if typed.starts_with(|letter: char| letter.is_ascii_alphabetic()) {
+        if !typed.is_ascii() {
+            return Err("A line has ASCII characters alone.".to_owned());
+        }
+        return Ok([typed.as_bytes(), &[LINE_END]].concat());
+    }
+    let bytes = bytes_of(typed)?;
+    if bytes.len() > FRAME_BYTES {
+        return Err(format!("These are {} bytes; a frame has {FRAME_BYTES}.", bytes.len()));
+    }
+    Ok(line_of_host(&bytes))
+}
+
+/// Numbers from 0 to 255, and texts in quotes.
+fn bytes_of(typed: &str) -> Result<Vec<u8>, String> {
+    let mut bytes = Vec::new();
+    for (index, part) in typed.split('"').enumerate() {
+        if index % 2 == 1 {
+            if !part.is_ascii() {
+                return Err("A text has ASCII characters alone.".to_owned());
+            }
+            bytes.extend(part.bytes());
+            continue;
+        }
+        for word in
+            part.split(|letter: char| letter.is_whitespace() || letter == ',').filter(|word| !word.is_empty())
+        {
+            bytes.push(
+                word.parse()
+                    .map_err(|_| format!("\"{word}\" is no byte: use 0 to 255, or a text in quotes."))?,
+            );
+        }
+    }
+    if typed.matches('"').count() % 2 == 1 {
+        return Err("The closing quote is missing.".to_owned());
+    }
+    Ok(bytes)
+}
+
+fn shown(bytes: &[u8]) -> String {
+    let text: String = bytes.iter().copied().map(char::from).collect();
+    text.trim().replace("\r\n", " | ").replace(['\r', '\n'], " | ")
+}
+
+impl Terminal {
+    /// What stands in the field means this, or is no line.
+    ///
+    /// # Errors
+    /// A sentence: it is none.
+    pub fn meaning(&self) -> Result<String, String> {
+        let line = line_of(&self.typed)?;
+        Ok(format!("{}: {}", shown(&line), describe_sent(&line).text))
+    }
+
+    /// Sends what stands in the field, if it is a line.
+    pub fn send(&mut self) -> Option<Command> {
+        let bytes = line_of(&self.typed).ok()?;
+        self.typed.clear();
+        self.asked += 1;
+        let id = FIRST_ID + self.asked;
+        if self.entries.len() == KEPT {
+            self.entries.pop_front();
+        }
+        let meaning = describe_sent(&bytes).text;
+        self.entries.push_back(Entry { id, sent: shown(&bytes), meaning, answer: None });
+        Some(Command::Raw { id, bytes })
+    }
+
+    /// Takes note of an answer.
+    pub fn note(&mut self, event: &Event) {
+        let Event::RawReply { id, result } = event else { return };
+        let Some(entry) = self.entries.iter_mut().find(|entry| entry.id == *id) else { return };
+        entry.answer = Some(match result {
+            Ok(reply) if reply.is_empty() => Ok((String::new(), "nothing came back".to_owned())),
+            Ok(reply) => Ok((shown(reply), describe_received(reply).text)),
+            Err(why) => Err(why.to_string()),
+        });
+    }
+
+    /// The line was not taken by the link.
+    pub fn not_sent(&mut self, id: u64) {
+        self.end(|entry| entry.id == id, "Not sent: the link is busy. Send it again in a moment.");
+    }
+
+    /// The link is gone: nothing more is answered.
+    pub fn link_ended(&mut self) {
+        self.end(|_| true, "The link ended before an answer came.");
+    }
+
+    fn end(&mut self, is_meant: impl Fn(&Entry) -> bool, why: &str) {
+        for entry in self.entries.iter_mut().filter(|entry| entry.answer.is_none() && is_meant(entry)) {
+            entry.answer = Some(Err(why.to_owned()));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_go_out_as_they_are_and_bytes_as_triplets() {
+        for (typed, line) in [
+            ("G", "G\r"),
+            ("I001002003", "I001002003\r"),
+            ("1 2, 3", "I001002003\r"),
+            ("\"TX\" 5", "I084088005\r"),
+            ("255", "I255\r"),
+        ] {
+            assert_eq!(line_of(typed).unwrap(), line.as_bytes(), "{typed}");
+        }
+        for (typed, clause) in [
+            ("", "Type G"),
+            ("256", "0 to 255"),
+            ("\"TX", "closing quote"),
+            ("1 2 3 4 5 6 7 8 9", "9 bytes"),
+            ("1 x", "\"x\" is no byte"),
+        ] {
+            let why = line_of(typed).unwrap_err();
+            assert!(why.contains(clause), "{typed}: {why}");
+        }
+    }
+
+    #[test]
+    fn an_answer_is_told_as_it_came_and_in_words() {
+        let mut terminal = Terminal { typed: "I080001".to_owned(), ..Terminal::default() };
+        let Some(Command::Raw { id, bytes }) = terminal.send() else { panic!("it is a line") };
+        assert_eq!(bytes, b"I080001\r");
+        terminal.note(&Event::RawReply { id, result: Ok(b"073082080001002000000000000\r".to_vec()) });
+        let answer = terminal.entries[0].answer.clone().unwrap().unwrap();
+        assert_eq!(answer.1, "host library, version 2, answer 1");
+    }
+}

@@ -1,0 +1,49 @@
+//! The board as it is seen: the two characters of its display, and its on/off inputs.
+
+use brushwork_motorvator_client::indicators;
+use brushwork_motorvator_wire::host::characters_text;
+use egui::{Align2, FontId, RichText, Role, Sense, Stroke, Ui, WidgetInfo, vec2};
+
+use crate::model::Connection;
+use crate::theme::Palette;
+use crate::widgets::heading::heading_ui;
+
+/// Of one character.
+const SIZE: egui::Vec2 = vec2(34.0, 48.0);
+
+pub fn display_ui(ui: &mut Ui, connection: &Connection) {
+    heading_ui(ui, "Display and inputs");
+    let palette = Palette::of(ui);
+    let status = connection.link.status;
+    let shown = status.and_then(|status| indicators::display_of(status.word));
+    ui.horizontal(|ui| {
+        let (place, response) = ui.allocate_exact_size(vec2(2.0 * SIZE.x, SIZE.y), Sense::hover());
+        let text = shown.map_or_else(|| "  ".to_owned(), characters_text);
+        let label = format!("Display {text}");
+        response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &label));
+        ui.painter().rect_stroke(place, 3.0, Stroke::new(1.0, palette.line), egui::StrokeKind::Inside);
+        for (index, letter) in text.chars().enumerate() {
+            let middle = place.left_center() + vec2((index as f32 + 0.5) * SIZE.x, 0.0);
+            let font = FontId::monospace(34.0);
+            ui.painter().text(middle, Align2::CENTER_CENTER, letter, font, palette.text);
+        }
+        ui.add_space(12.0);
+        for number in 1..=4_u8 {
+            let key = ["input_1", "input_2", "input_3", "input_4"][usize::from(number) - 1];
+            let word = match status.filter(|_| shown.is_some()) {
+                None => "?",
+                Some(status) if status.is_active(key) => "changed",
+                Some(_) => "as at the start",
+            };
+            ui.vertical(|ui| {
+                ui.label(format!("Input {number}"));
+                ui.label(RichText::new(word).small().weak());
+            });
+        }
+    });
+    let source = match shown {
+        Some(_) => "As the host library tells them: it hears when an input changes, not how it stands.",
+        None => "The host library does not answer: what another program shows, nobody tells.",
+    };
+    ui.label(RichText::new(source).small().weak());
+}

@@ -1,0 +1,98 @@
+//! The commands on a simulated MotorVator: one that runs the host library, and one that does not.
+
+use crate::cli::{DONE, REFUSED, Run, Simulated, USAGE, name, program, run};
+use serde_json::Value;
+
+/// A program of the manual.
+const FLASH: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/mecc/flash.mecc");
+
+fn line() -> Simulated {
+    Simulated::start(&["--model", "motorvator-3"])
+}
+
+fn on(line: &Simulated, words: &[&str]) -> Run {
+    run(program().args(words).args(["--connect", &format!("{},family=motorvator", line.port())]))
+}
+
+#[test]
+fn both_halves_of_a_board_are_listed_and_told() {
+    let line = line();
+    let listed = on(&line, &["list", "--scan", "--json"]).ended_with(DONE).json();
+    let units = listed["ports"][0]["units"].as_array().expect("one line").clone();
+    let halves: Vec<_> = units.iter().map(|unit| unit["motorvator"]["motors"].clone()).collect();
+    assert_eq!(halves, ["A and B", "C and D"]);
+    assert!(units.iter().all(|unit| unit["motorvator"]["host_library"] == 2));
+    on(&line, &["list", "--scan"]).ended_with(DONE).prints("motors c and d MotorVator V3");
+    on(&line, &["status"]).ended_with(DONE).prints("Host library 2 runs; motors A and B, or stepper 1.");
+    let told = on(&line, &["status", "--address", "2", "--json"]).ended_with(DONE).json();
+    assert_eq!(
+        (&told["readings"]["m1_pwm"], &told["readings"]["m2_pwm"]),
+        (&Value::from(0.0), &Value::from(0.0))
+    );
+}
+
+#[test]
+fn motors_are_driven_by_duty_and_nothing_else() {
+    let line = line();
+    let driven = on(&line, &["drive", "--address", "2", "--motor", "2", "--duty", "-40", "--for", "1"]);
+    driven.ended_with(DONE).explains("does not tell how fast a motor turns").prints("-40.0");
+    on(&line, &["drive", "--speed", "100"]).ended_with(REFUSED).explains("takes duties and nothing else");
+    on(&line, &["drive", "--duty", "10", "--accel", "5"]).ended_with(REFUSED).explains("at once");
+    on(&line, &["stop"]).ended_with(DONE).prints("motors A and B: both motors stopped");
+    run(program().args(["drive", "--connect", "sim:motorvator-3", "--duty", "30", "--for", "0.5"]))
+        .ended_with(DONE);
+}
+
+#[test]
+fn nothing_is_driven_where_the_host_library_does_not_answer() {
+    let line = Simulated::start(&["--model", "motorvator-3", "--program", FLASH, "--started", "yes"]);
+    on(&line, &["status"]).ended_with(DONE).prints("The host library does not answer");
+    on(&line, &["drive", "--duty", "40", "--for", "1"])
+        .ended_with(REFUSED)
+        .explains("the host library does not answer")
+        .explains("assets/mecc/host.mecc");
+    let type_in = |typed: &str| on(&line, &["terminal", typed]);
+    type_in("H").ended_with(DONE).prints("MotorVator AWOS 2.32");
+    for may_move in ["G", "I077001001070060"] {
+        type_in(may_move).ended_with(REFUSED).explains("not armed");
+    }
+}
+
+#[test]
+fn a_stepper_is_configured_through_the_settings_which_are_not_kept() {
+    let line = line();
+    let read = || on(&line, &["settings", "read", "--address", "2", "--json"]).ended_with(DONE).json();
+    let values = || {
+        let json = read();
+        let rows = json["settings"].as_array().expect("rows").clone();
+        rows.into_iter().map(|row| row["value"].clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(values(), [10, 20, 0]);
+    let write =
+        |changes: &[&str]| on(&line, &[&["settings", "write", "--address", "2", "--yes"], changes].concat());
+    write(&["stepper.min_wait=5", "stepper.hold_current=40"]).ended_with(DONE).prints("ConfigStepper");
+    assert_eq!(values(), [5, 20, 40]);
+    write(&["stepper.min_wait=30"]).explains("would be above MaxWait");
+    on(&line, &["settings", "save", "--address", "2", "--yes"]).explains("is kept over a restart");
+    on(&line, &["settings", "defaults", "--address", "2", "--yes"]).ended_with(DONE);
+    assert_eq!(values(), [10, 20, 0]);
+}
+
+#[test]
+fn traffic_typed_lines_and_the_protocol_are_told_in_words() {
+    let line = line();
+    on(&line, &["terminal", "I080001", "I077002001070060"])
+        .ended_with(REFUSED)
+        .prints("order 1: ping")
+        .prints("host library, version 2, answer 1")
+        .explains("not armed");
+    let folder = tempfile::tempdir().expect("a temporary folder can be made");
+    let file = folder.path().join("traffic.txt");
+    std::fs::write(&file, "49 30 30 31 30 30 32 0D\n47 0D\n").expect("it takes it");
+    run(program().args(["monitor", "--family", "motorvator", "--decode", name(&file)]))
+        .ended_with(DONE)
+        .prints("data for the program: 1 2 0 0 0 0 0 0")
+        .prints("start the program");
+    run(program().args(["protocol", "--family", "motorvator", "M"])).ended_with(DONE).prints("order 77 (M)");
+    run(program().args(["protocol", "--family", "motorvator", "Z"])).ended_with(USAGE);
+}
