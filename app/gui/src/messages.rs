@@ -65,8 +65,7 @@ messages! {
         LinkLost "The link was lost in the examination. What it had changed can be put back when the controller is connected again.",
         NotBegun "The settings of this controller are not known yet. Wait until they are read.",
         NoPath "Type where the report is to go: a path that ends in .json, or in anything else for text.",
-        IsThere { path: String } "{path} is there already, and is not replaced. Choose another name.",
-        NotSaved { path: String, error: String } "The report could not be written to {path}: {error}.",
+        NotSaved { path: String, error: String } "The report could not be written to {path}: {error}. Choose another name.",
     }
 }
 

@@ -40,7 +40,7 @@ fn report(name: &str, plant: usize, method: Method, level: f64) -> Report {
     if std::env::var_os("UPDATE_REPORTS").is_some() {
         let plant = specimen(7, plant);
         let request = Request { level, ..request_of(&plant, method) };
-        file::write(&tune(&mut Joined::first(Box::new(Unit::axis(&plant))), &request), &path)
+        file::write(&tune(&mut Joined::first(Box::new(Unit::axis(&plant))), &request), &path, false)
             .expect("the folder is in the repository");
     }
     file::read(&path).expect("it is in the repository")

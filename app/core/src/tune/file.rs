@@ -12,6 +12,7 @@ use serde_json::error::Category;
 use super::law::Report;
 use crate::messages::ReportFileMessage;
 use brushwork_link::bounded;
+use brushwork_link::files::{replace_file, write_new_file};
 
 /// What of a file tells whose it is.
 #[derive(Deserialize)]
@@ -47,12 +48,13 @@ pub fn text_of(report: &Report) -> Result<String, Message> {
     Ok(text)
 }
 
-/// Writes a report.
+/// Writes a report; `replaces` an older file only where that was agreed to.
 ///
 /// # Errors
-/// Says what was tried, why it failed and what to do.
-pub fn write(report: &Report, path: &Path) -> Result<(), Message> {
-    let written = text_of(report).and_then(|text| std::fs::write(path, text).map_err(Message::error));
+/// Says what was tried, why it failed, which may be that the file is there already, and what to do.
+pub fn write(report: &Report, path: &Path, replaces: bool) -> Result<(), Message> {
+    let write = if replaces { replace_file } else { write_new_file };
+    let written = text_of(report).and_then(|text| write(path, text.as_bytes()).map_err(Message::error));
     written.map_err(|error| ReportFileMessage::NotWritten { path: path.display().to_string(), error }.into())
 }
 

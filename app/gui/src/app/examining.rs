@@ -8,7 +8,7 @@ use crate::model::examination::ExaminationAction;
 use crate::model::{Effect, Gravity, Owner};
 use brushwork_core::keep::{TrialKeeper, UnitId};
 use brushwork_core::messages::{EndedMessage, ProfilePlanMessage};
-use brushwork_link::files::replace_file;
+use brushwork_link::files::write_new_file;
 use brushwork_link::{Message, WriteOptions};
 
 impl App {
@@ -72,12 +72,9 @@ impl App {
         let Some(found) = panel.found().filter(|_| !path.is_empty()) else {
             return Err(ExaminationMessage::NoPath.into());
         };
-        if Path::new(&path).symlink_metadata().is_ok() {
-            return Err(ExaminationMessage::IsThere { path }.into());
-        }
         let is_json = Path::new(&path).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
         let content = if is_json { found.json() } else { found.text() };
-        match replace_file(Path::new(&path), content.as_bytes()) {
+        match write_new_file(Path::new(&path), content.as_bytes()) {
             Ok(()) => self.model.messages.note(WindowStatusMessage::ReportIsIn { path }),
             Err(error) => {
                 return Err(ExaminationMessage::NotSaved { path, error: error.to_string() }.into());

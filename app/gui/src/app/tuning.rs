@@ -42,8 +42,8 @@ impl App {
                 Ok(())
             }
             TuneAction::Adjust(motor, registers) => self.adjust(which, motor, registers),
-            TuneAction::SaveReport(path) => match front.tune.front(which).run() {
-                Some(run) => file::write(&run.report, &path).map(|()| {
+            TuneAction::SaveReport { path, replaces } => match front.tune.front(which).run() {
+                Some(run) => file::write(&run.report, &path, replaces).map(|()| {
                     self.model
                         .messages
                         .note(WindowStatusMessage::ReportIsIn { path: path.display().to_string() });

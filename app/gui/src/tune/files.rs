@@ -39,7 +39,8 @@ pub fn files_ui(ui: &mut Ui, tuning: &mut Tuning, which: Loop, commands: &mut Co
                 let name = format!("tuning-{}.json", tuning.motor(which));
                 ask(tuning, FileAction::Save { name });
             } else {
-                commands.push(Command::Tune(TuneAction::SaveReport(with_extension(&path))));
+                let path = with_extension(&path);
+                commands.push(Command::Tune(TuneAction::SaveReport { path, replaces: false }));
             }
         }
         let open = ui.button("Open report");
@@ -72,8 +73,11 @@ fn answer(tuning: &mut Tuning, commands: &mut Commands) {
         FileAnswer::Waiting => {}
         FileAnswer::None => tuning.dialog = None,
         FileAnswer::Chosen(path) => {
-            let action =
-                if asked.saves { TuneAction::SaveReport(path) } else { TuneAction::OpenReport(path) };
+            let action = if asked.saves {
+                TuneAction::SaveReport { path, replaces: true }
+            } else {
+                TuneAction::OpenReport(path)
+            };
             commands.push(Command::Tune(action));
             tuning.dialog = None;
         }

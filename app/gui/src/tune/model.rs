@@ -39,7 +39,11 @@ pub enum TuneAction {
     PutWindingBack,
     /// Gains turned by hand, into the controller's RAM.
     Adjust(Motor, AnyRegisters),
-    SaveReport(std::path::PathBuf),
+    SaveReport {
+        path: std::path::PathBuf,
+        /// A file of that name, which the desktop's own dialog has asked about.
+        replaces: bool,
+    },
     OpenReport(std::path::PathBuf),
 }
 

@@ -439,6 +439,12 @@ fn a_profile_is_saved_opened_compared_and_taken_over_by_row() {
     bench.harness.get_all_by_label("Save profile").last().unwrap().click();
     bench.pass_ms(300);
     assert!(bench.sees_part("242 settings are in"));
+    bench.harness.get_all_by_label("Save profile").last().unwrap().click();
+    bench.pass_ms(300);
+    assert!(bench.sees_part("is there already, and is not replaced"));
+    bench.press("Replace the file");
+    bench.pass_ms(300);
+    assert!(bench.sees_part("242 settings are in"));
     let saved = brushwork_link::settings::Profile::load(path.as_ref()).unwrap();
     let wanted = brushwork_link::settings::SettingValue::Number(33.5);
     assert_eq!(saved.settings.get("limits.main_battery.max_volts"), Some(wanted));

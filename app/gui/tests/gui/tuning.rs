@@ -443,6 +443,16 @@ fn a_report_is_saved_as_the_command_line_writes_it_and_opened_again() {
         serde_json::from_str(&std::fs::read_to_string(&path).expect("written")).expect("a report");
     assert_eq!(saved, run(&mut bench, Loop::Velocity).report);
     assert_eq!(saved.replay().expect("the record belongs to it"), saved, "the same to the last bit");
+    std::fs::write(&path, "precious").expect("it can be written");
+    press_below(&mut bench, "Save report");
+    assert_eq!(
+        std::fs::read_to_string(&path).expect("it is there"),
+        "precious",
+        "nothing is replaced unasked"
+    );
+    assert!(bench.said().iter().any(|text| text.contains("already")), "{:?}", bench.said());
+    std::fs::remove_file(&path).expect("it is there");
+    press_below(&mut bench, "Save report");
     press_below(&mut bench, "Open report");
     bench.pass_ms(300);
     assert_eq!(bench.model().front.tune.front(Loop::Velocity).runs.len(), 2);

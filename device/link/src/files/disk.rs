@@ -88,3 +88,14 @@ fn flush_folder(_folder: &Path) -> io::Result<()> {
 pub fn replace_file(path: &Path, content: &[u8]) -> io::Result<()> {
     replace(&Disk, path, content)
 }
+
+/// Writes a file that is not there yet.
+///
+/// # Errors
+/// [`io::ErrorKind::AlreadyExists`] where something has that name, be it a link into nothing; else as [`replace`].
+pub fn write_new_file(path: &Path, content: &[u8]) -> io::Result<()> {
+    if path.symlink_metadata().is_ok() {
+        return Err(io::Error::new(io::ErrorKind::AlreadyExists, "it is there already, and is not replaced"));
+    }
+    replace_file(path, content)
+}

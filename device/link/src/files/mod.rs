@@ -5,7 +5,7 @@ mod disk;
 mod layer;
 mod simulated;
 
-pub use disk::{Disk, replace_file};
+pub use disk::{Disk, replace_file, write_new_file};
 pub use layer::{Files, replace};
 pub use simulated::{DiskFault, Remains, SimulatedDisk};
 

@@ -23,6 +23,8 @@ pub struct Profiles {
     pending: Option<(Opened, Vec<Message>)>,
     /// What came of the last attempt.
     pub reported: Reported,
+    /// A file of the name that was typed is there already; it is replaced once that is agreed to.
+    pub is_in_the_way: bool,
 }
 
 /// What a path is asked for.
@@ -62,6 +64,7 @@ impl Profiles {
 
     pub fn forget_reported(&mut self) {
         self.reported = Reported::Nothing;
+        self.is_in_the_way = false;
     }
 
     /// Whether the desktop's own dialog is open.
@@ -88,6 +91,8 @@ impl Profiles {
             FileAnswer::Chosen(path) => {
                 self.dialog = None;
                 self.path = path.display().to_string();
+                // The desktop's dialog has asked already.
+                self.is_in_the_way = true;
                 return Some(purpose);
             }
         }

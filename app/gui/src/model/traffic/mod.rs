@@ -7,9 +7,10 @@ pub mod pending;
 pub use kept::{KeptCommand, Transact};
 pub use log::{Filter, Log, MOST, MOST_BYTES, Outcome, Transaction};
 
-use std::path::PathBuf;
+use std::path::Path;
 
 use brushwork_link::device::Event;
+use brushwork_link::files::write_new_file;
 
 use crate::files::FileDialog;
 use crate::messages::TrafficMessage;
@@ -53,12 +54,12 @@ impl Traffic {
         self.kept.forget();
     }
 
-    /// Writes what the filter lets through to a file; what became of it, as a sentence.
-    pub fn save(&self, path: &PathBuf) -> Result<TrafficMessage, TrafficMessage> {
+    /// Writes what the filter lets through to a new file; what became of it, as a sentence.
+    pub fn save(&self, path: &Path) -> Result<TrafficMessage, TrafficMessage> {
         let text = self.log.to_text();
         let lines = self.log.shown_len();
         let shown = path.display().to_string();
-        match std::fs::write(path, text) {
+        match write_new_file(path, text.as_bytes()) {
             Ok(()) => Ok(TrafficMessage::Saved { count: lines, path: shown }),
             Err(error) => Err(TrafficMessage::NotSaved { path: shown, error: error.to_string() }),
         }

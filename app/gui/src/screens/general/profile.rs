@@ -26,10 +26,7 @@ pub fn open_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
 
 pub fn save_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
     title_ui(ui, "Save profile");
-    text_ui(
-        ui,
-        "Keeps the settings that were read from the controller in a file. A file of that name is replaced.",
-    );
+    text_ui(ui, "Keeps the settings that were read from the controller in a file.");
     path_ui(ui, general, Purpose::Save);
     let edits = general.unit().map_or(0, |unit| unit.edits().len());
     if edits > 0 {
@@ -48,7 +45,8 @@ pub fn save_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
         );
     }
     let has_path = !general.profiles.path.trim().is_empty();
-    vec![("Save profile", Act::SaveProfile, is_read && has_path)]
+    let title = if general.profiles.is_in_the_way { "Replace the file" } else { "Save profile" };
+    vec![(title, Act::SaveProfile, is_read && has_path)]
 }
 
 /// The path, and the desktop's own dialog for it.

@@ -45,12 +45,18 @@ impl GeneralView<'_> {
         let typed = self.profiles.path.trim();
         let path =
             if Path::new(typed).extension().is_some() { typed.to_owned() } else { format!("{typed}.json") };
-        match profile.save(Path::new(&path)) {
+        let is_agreed = std::mem::take(&mut self.profiles.is_in_the_way);
+        let saved =
+            if is_agreed { profile.save(Path::new(&path)) } else { profile.save_new(Path::new(&path)) };
+        match saved {
             Ok(()) => {
                 let settings = counted(profile.settings.len());
                 self.profiles.reported = Reported::Done(format!("{settings} are in {path}."));
             }
-            Err(error) => self.profiles.fail(&error, false),
+            Err(error) => {
+                self.profiles.is_in_the_way = !is_agreed && Path::new(&path).is_file();
+                self.profiles.fail(&error, false);
+            }
         }
     }
 
