@@ -43,7 +43,7 @@ fn the_display_the_motors_and_every_way_out_of_driving() {
         let folder = tempfile::tempdir().expect("a temporary folder can be made");
         let mut bench = connected(&folder);
         assert!(bench.sees("Display H2"), "the display of the library");
-        assert!(bench.sees("NOHOST"), "an indicator");
+        assert!(bench.sees("HOST: OK"), "an indicator");
         bench.press("Motors");
         bench.app().model.front.pwm.set_duty(brushwork_values::Motor::M1, 40.0);
         bench.pass_ms(500);

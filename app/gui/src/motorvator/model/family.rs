@@ -54,10 +54,9 @@ impl Family for Motorvator {
     }
 
     fn unit_row(&self, identity: &Identity) -> Option<(&'static str, String)> {
-        let library = MotorvatorFacts::of(identity)?.library;
-        let text =
-            library.map_or_else(|| "does not answer".to_owned(), |version| format!("version {version}"));
-        Some(("Host library", text))
+        // Whether it answers now its indicator tells.
+        let version = MotorvatorFacts::of(identity)?.library?;
+        Some(("Host library", format!("version {version}")))
     }
 
     fn simulated(&self) -> Vec<(&'static str, &'static str)> {
@@ -128,7 +127,7 @@ const fn indicator(short: &'static str, title: &'static str) -> IndicatorInfo {
 
 /// In the order and with the letters of the client's table, by which they are lit.
 const INDICATORS: [IndicatorInfo; 8] = [
-    indicator("NOHOST", "Host library silent"),
+    indicator("HOST", "Host library silent"),
     indicator("DEAD", "Dead-man stopped"),
     indicator("STEP1", "Stepper 1 moves"),
     indicator("STEP2", "Stepper 2 moves"),

@@ -41,7 +41,7 @@ macro_rules! indicators {
 }
 
 indicators! {
-    NO_LIBRARY, "no_library" "NOHOST" "The host library does not answer" Error;
+    NO_LIBRARY, "no_library" "HOST" "The host library does not answer" Warning;
     flags::DEAD_MAN as u32, "dead_man" "DEAD" "No order came for 250 ms: the library has stopped the motors" Warning;
     flags::STEPPER_1 as u32, "stepper_1" "STEP1" "Stepper 1 moves" Signal;
     flags::STEPPER_2 as u32, "stepper_2" "STEP2" "Stepper 2 moves" Signal;

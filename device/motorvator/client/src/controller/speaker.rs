@@ -8,12 +8,12 @@ use brushwork_motorvator_wire::host::{HostAnswer, HostOrder, VERSION, flags};
 use brushwork_motorvator_wire::{LINE_END, PREFIX};
 use std::time::Duration;
 
-/// Time for what the library does before it answers: some hundred instructions. Assumed.
-const WORK: Duration = Duration::from_millis(40);
+/// Time for what the library does before it answers: some hundred instructions, and more for a busy computer. Assumed.
+const WORK: Duration = Duration::from_millis(100);
 /// Bytes of an answer: nine triplets and the end of the line.
 const ANSWER_BYTES: usize = 28;
-/// The library tells every half second that it runs, while nobody asks.
-const BEACON_WITHIN: Duration = Duration::from_millis(700);
+/// The library tells every half second that it runs, while nobody asks; the rest is for a busy computer.
+const BEACON_WITHIN: Duration = Duration::from_millis(1200);
 /// The answer to `H`, at the longest. Assumed: nobody has written it down.
 const HELP_BYTES: usize = 128;
 /// Words that only a MotorVator's command line uses (maker's other pages).
