@@ -8,7 +8,7 @@ use crate::experiment_guard::{ExperimentGuard, Point};
 use crate::lag::{ClosedLoopRecord, LagFit, fit_lag, predicted_record};
 use crate::law::Law;
 use crate::linear::{DiscretePlant, LoopPlant};
-use crate::margin::{headroom, scaled};
+use crate::margin::{headroom, may_be_short, scaled};
 use crate::model::{Gains, Pid};
 use crate::oscillation::{deviation, flank_overshoot, speed_ripple};
 use crate::proposal::{design_for, propose};
@@ -101,14 +101,30 @@ fn run_steps<L: Law>(
 }
 
 /// Tries the proposed gains and lowers them while the machine is rougher than predicted. Where none are as smooth as predicted, the
-/// smoothest of those tried stay proposed.
+/// smoothest of those tried stay proposed. A warning says where their margin is not known to be what it should be.
 pub fn check_moves<L: Law>(
     guard: &mut ExperimentGuard<'_, L>,
     request: &Request<L>,
     task: &Task<L>,
     report: &mut Report<L>,
 ) -> Result<(), Cause> {
-    let room = leave_room(guard, request, task, report)?;
+    let found = leave_room(guard, request, task, report)?;
+    let is_doubtful = found.is_some_and(|(_, is_doubtful)| is_doubtful);
+    try_until_smooth(guard, request, task, report, found.map(|(room, _)| room))?;
+    if report.design.is_some_and(|design| may_be_short(task, &design.gains, is_doubtful)) {
+        report.causes.push(Cause::MarginUnsure);
+    }
+    Ok(())
+}
+
+/// Tries the proposed gains with what is left of their margin, and lowers them until they are smooth.
+fn try_until_smooth<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
+    request: &Request<L>,
+    task: &Task<L>,
+    report: &mut Report<L>,
+    room: Option<f64>,
+) -> Result<(), Cause> {
     let mut smoothest: Option<(f64, Design, Measured)> = None;
     for back_offs in 0..=MOST_BACK_OFFS {
         let Some(design) = report.design else { return Ok(()) };
@@ -179,13 +195,14 @@ fn try_design<L: Law>(
     }
 }
 
-/// Raises the gain of the velocity loop on the machine, and lowers the proposed gains where less of it is left than they promise.
+/// Raises the gain of the velocity loop on the machine, and lowers the proposed gains where less of it is left than they promise. Gives what is
+/// left, and whether that is doubtful.
 fn leave_room<L: Law>(
     guard: &mut ExperimentGuard<'_, L>,
     request: &Request<L>,
     task: &Task<L>,
     report: &mut Report<L>,
-) -> Result<Option<f64>, Cause> {
+) -> Result<Option<(f64, bool)>, Cause> {
     // Registers that are written at rest only cannot be raised, and a loop without a gain of the speed is no velocity loop.
     let can_be_raised = !guard.facts.writes_at_rest && request.excitation == Excitation::Free;
     let damped =
@@ -203,7 +220,7 @@ fn leave_room<L: Law>(
         let gains = Gains { position: inner.position.map(less), ..inner };
         propose(report, request, task, Design { gains, ..design }, guard.options.travel);
     }
-    Ok(Some(found.quiet / factor))
+    Ok(Some((found.quiet / factor, found.is_doubtful)))
 }
 
 /// A position that hunts is first looked at for backlash: within it nothing can be held. `None` where

@@ -249,7 +249,6 @@ fn manners() -> Vec<(&'static str, Manner)> {
 /// What a run in each manner must come to: gains, or this cause.
 fn refusal_of(name: &str, method: Method) -> Option<Cause> {
     match (name, method) {
-        ("450 ticks a second", _) => Some(Cause::UnknownLaw),
         // Without it, and without velocity gains, its position loop gives no duty at all.
         ("no feed-forward", Method::Pd | Method::Piv) => Some(Cause::UnknownLaw),
         _ => None,
