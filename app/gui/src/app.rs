@@ -17,6 +17,7 @@ use egui::{Context, Ui, ViewportCommand};
 
 use super::command::{Command, GuidedAction};
 use super::ending::EndBySignal;
+use super::focus::{self, Region};
 use super::frame::FRAME_INTERVAL;
 use super::links::Links;
 use super::model::palette::Palette;
@@ -304,6 +305,11 @@ impl App {
                 self.request(Request::LearnAnew);
             }
             Command::Poll(rate) => self.poll(rate),
+            Command::Reverse(image) => self.reverse(image),
+            Command::BackUp => match model.front.settings.back_up() {
+                Ok(said) => model.messages.note(said),
+                Err(why) => model.messages.fail(why),
+            },
             Command::ReadLoops => self.read_loops_again(),
             Command::ApplyLoops(columns) => self.apply_loops(columns),
             Command::World(action) => self.act_on_world(action),
@@ -355,6 +361,7 @@ impl App {
             Command::OpenPalette => {
                 model.palette = if model.palette.is_some() { None } else { Some(Palette::opened()) };
             }
+            Command::NextRegion { forward } => focus::go_on(&self.ctx, forward),
             Command::OpenHelp(page) => model.help.open(page),
             Command::Exit => self.closing = true,
             Command::DismissMessage => model.messages.dismiss(),
@@ -403,6 +410,9 @@ impl App {
         }
         self.model.front.tune.want_winding_back();
         self.model.turn_to(screen);
+        if screen != Screen::MclEditor {
+            focus::want(&self.ctx, Region::Screen);
+        }
         if screen == Screen::DeviceStatus {
             self.model.front.doubt_diagnosis();
         }

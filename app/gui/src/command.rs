@@ -3,7 +3,7 @@
 use brushwork_canopen::NodeId;
 use std::rc::Rc;
 
-use brushwork_link::{ArmScope, PollRate, Stream};
+use brushwork_link::{ArmScope, PollRate, SettingsImage, Stream};
 use brushwork_plant::world::WorldAction;
 use brushwork_values::{Motor, Value};
 use egui::ThemePreference;
@@ -46,6 +46,10 @@ pub enum Command {
     /// Forgets what was learned of the unit's firmware, and learns it anew.
     LearnAnew,
     Poll(PollRate),
+    /// Turns a direction round in the controller's RAM.
+    Reverse(SettingsImage),
+    /// Keeps a copy of the settings on this computer.
+    BackUp,
     /// Reads the settings of the control loops again.
     ReadLoops,
     /// Writes the edits of these settings of the control loops to the controller's RAM.
@@ -96,6 +100,10 @@ pub enum Command {
     /// Empties the list of events.
     ClearHistory,
     OpenPalette,
+    /// Puts the keyboard into the next region of the window, or the one before.
+    NextRegion {
+        forward: bool,
+    },
     OpenHelp(HelpPage),
     /// Stops all motors and closes the window.
     Exit,

@@ -17,6 +17,7 @@ pub mod families;
 pub mod family;
 pub mod family_action;
 pub mod files;
+pub mod focus;
 pub mod frame;
 pub mod graph;
 pub mod help;

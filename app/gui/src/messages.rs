@@ -319,3 +319,32 @@ messages! {
         NotFound { path: String, error: String } "Could not read {path}: {error}.",
     }
 }
+
+messages! {
+    /// How the steps of the guided path stand, and what that is seen by.
+    pub enum PathMessage {
+        Unread "The settings have not been read yet.",
+        Factory "All of it is as the factory has it.",
+        Set { motors: String } "Set for {motors}.",
+        IfWanted "As the factory has it. Not every axis needs it.",
+        HasSwitch "An input pin can stop a motor or tell where it is.",
+        NoSwitch "No input pin is a switch. An axis that turns freely needs none.",
+        Saved "EEPROM holds what the controller works with.",
+        OneDiffers "1 setting in RAM is not in EEPROM.",
+        Differs { count: usize } "{count} settings in RAM are not in EEPROM.",
+        NothingWritten "Nothing was changed from here since the connection.",
+        OneWritten "1 setting was written to RAM and not saved.",
+        Written { written: usize } "{written} settings were written to RAM and not saved.",
+        BackedUp "The newest backup holds what the controller works with.",
+        BackupDiffers "The newest backup holds other settings.",
+        NoBackup "There is no backup of this controller on this computer.",
+        Along { motors: String } "Motor and encoder turn the same way: seen on {motors}.",
+        Against { motors: String } "The encoder counts against its motor: seen on {motors}.",
+        LoopIsSet "A loop is set, which works with nothing else.",
+        NotTurned "No motor was seen to turn under power yet.",
+        Counts { motors: String } "The count follows the shaft: seen on {motors}.",
+        NoCount "No count has changed since the connection.",
+        BackupMade "The settings are backed up on this computer.",
+        BackupNotRead "The settings have not been read, so there is nothing to back up yet.",
+    }
+}

@@ -5,6 +5,7 @@
 
 use crate::messages::{WindowActMessage, WindowRemedyMessage};
 use brushwork_link::Message;
+use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -41,6 +42,8 @@ pub struct Remembered {
     pub recent: Vec<String>,
     pub left_width: f32,
     pub world_width: f32,
+    /// What the graph has of the height of each screen whose bar was moved, by the screen's title.
+    pub graph_parts: BTreeMap<String, f32>,
 }
 
 /// Where the window was, in points.
@@ -74,6 +77,7 @@ impl Default for Remembered {
             recent: Vec::new(),
             left_width: 0.0,
             world_width: 0.0,
+            graph_parts: BTreeMap::new(),
         };
         remembered.look_at(&Model::default());
         remembered
@@ -94,6 +98,8 @@ impl Remembered {
         self.recent = model.devices.recent.to_vec();
         self.left_width = model.layout.left_width.round();
         self.world_width = model.layout.world_width.round();
+        let part = |screen: &Screen| Some((screen.title().to_owned(), model.layout.graph_part(*screen)?));
+        self.graph_parts = Screen::ALL.iter().filter_map(part).collect();
     }
 
     /// Makes the window like it was.
@@ -111,6 +117,9 @@ impl Remembered {
         }
         model.devices.set_recent(self.recent.clone());
         model.layout.set(self.left_width, self.world_width);
+        for screen in Screen::ALL {
+            model.layout.set_graph_part(screen, self.graph_parts.get(screen.title()).copied());
+        }
     }
 }
 
@@ -317,6 +326,7 @@ mod tests {
         model.turn_to(Screen::Velocity);
         model.devices.remember("/dev/ttyACM0");
         model.layout.set(250.0, 300.0);
+        model.layout.set_graph_part(Screen::Velocity, Some(0.75));
         let (mut memory, failure) = Memory::at(Some(path.clone()));
         assert!(failure.is_none());
         memory.current.look_at(&model);
@@ -348,6 +358,7 @@ mod tests {
         let (_folder, path) = file();
         fs::create_dir_all(path.parent().unwrap()).unwrap();
         let text = r#"{ "scale_percent": 9999, "left_width": -1e30, "screen": "Kitchen", "new": 1,
+            "graph_parts": { "Velocity Settings": 7e9, "Kitchen": 0.5 },
             "window": { "at": [1e20, 0], "size": [0, 0], "maximized": false } }"#;
         fs::write(&path, text).unwrap();
         let (memory, failure) = Memory::at(Some(path));
@@ -358,6 +369,7 @@ mod tests {
         assert_eq!(model.appearance.scale_percent, 250);
         assert_eq!(model.screen, Screen::DeviceStatus);
         assert!(model.layout.left_width >= 200.0);
+        assert_eq!(model.layout.graph_part(Screen::Velocity), None);
     }
 
     #[test]

@@ -15,6 +15,8 @@ use super::unit::{UnitId, profile_of};
 const FOLDER: &str = "backups";
 /// Held while a backup is made; in the root of the store.
 const LOCK: &str = ".lock";
+/// Why a backup was made that belongs to no act.
+const ASKED_FOR: &str = "asked-for";
 /// The newest of a unit that are all kept.
 const NEWEST: usize = 40;
 /// Of older ones the first of each day is kept, for so many days.
@@ -89,6 +91,11 @@ impl Store {
         self.back_up_at(SystemTime::now(), unit, act, profile)
     }
 
+    /// Keeps a profile as a backup of a unit because somebody asked for it. Old backups give way.
+    pub fn back_up_now(&self, unit: &UnitId, profile: &Profile) -> Result<Backup, KeepError> {
+        self.back_up_called(SystemTime::now(), unit, ASKED_FOR, profile)
+    }
+
     /// Keeps all settings of a unit before its firmware is replaced.
     pub fn back_up_for_firmware(
         &self,
@@ -115,7 +122,17 @@ impl Store {
         act: Act,
         profile: &Profile,
     ) -> Result<Backup, KeepError> {
-        let rest = format!("{}-before-{}", stamp(clock), act.label().replace(' ', "-"));
+        self.back_up_called(clock, unit, &format!("before-{}", act.label().replace(' ', "-")), profile)
+    }
+
+    fn back_up_called(
+        &self,
+        clock: SystemTime,
+        unit: &UnitId,
+        reason: &str,
+        profile: &Profile,
+    ) -> Result<Backup, KeepError> {
+        let rest = format!("{}-{reason}", stamp(clock));
         let folder = unit.file_name();
         let lock = sequence::lock(self.files(), &self.path(&[LOCK])?);
         // One sequence for all units, so that a number names one backup.

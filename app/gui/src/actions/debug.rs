@@ -10,7 +10,7 @@ use crate::model::{Model, Screen};
 
 pub(super) const ACTIONS: &[Action] = &[
     entry!(Debug 0 "debug.run", "Run or Continue", "Lets a paused script go on, or starts the program that is in the simulated controller.",
-        key(Key::F6), not_running, |_| Command::Debug(DebugAction::Run)),
+        ctrl(Key::F5), not_running, |_| Command::Debug(DebugAction::Run)),
     entry!(Debug 0 "debug.pause", "Pause Script", "Stops the script before its next line. The motors go on unless the world is frozen too.",
         ctrl(Key::F6), running, |_| Command::Debug(DebugAction::Pause)),
     entry!(Debug 1 "debug.step-into", "Step Into", "Runs one line; a GOSUB leads into its subroutine.",
@@ -20,7 +20,7 @@ pub(super) const ACTIONS: &[Action] = &[
     entry!(Debug 1 "debug.step-out", "Step Out", "Runs on until the subroutine has returned.",
         shift(Key::F11), paused, |_| Command::Debug(DebugAction::Step(StepKind::Out))),
     entry!(Debug 1 "debug.run-to-cursor", "Run to Cursor", "Runs on to the line of the caret, or the next one that has code.",
-        shift(Key::F6), has_script, |_| Command::Debug(DebugAction::RunToCursor)),
+        ctrl(Key::F10), has_script, |_| Command::Debug(DebugAction::RunToCursor)),
     entry!(Debug 2 "debug.breakpoint", "Set or Remove Breakpoint", "Sets a breakpoint at the line of the caret, or takes it away.",
         ctrl(Key::F8), on_screen, |_| Command::Debug(DebugAction::ToggleBreakpoint)),
     entry!(Debug 2 "debug.clear-breakpoints", "Remove All Breakpoints", "Takes away every breakpoint of the program.",

@@ -43,6 +43,7 @@ pub(super) const ACTIONS: &[Action] = &[
     action!(5 "graph.keep-run", KeepRun, "Lays what is in view beneath later samples, to compare."),
     action!(5 "graph.forget-runs", ForgetRuns, "Takes the runs that were kept away."),
     action!(6 "graph.toggle-large", ToggleLarge, "Gives the graph the whole screen, or its share again."),
+    action!(6 "graph.toggle-detached", ToggleDetached, "Puts the graph into a window of its own, which stays whatever the screen, or puts it back."),
     action!(6 "graph.toggle-list", ToggleList, "Folds the list of channels away, with a legend in the plot instead, or shows it again."),
     action!(7 "graph.record-csv", RecordCsv, "Records every sample from now on into a CSV file, with host times."),
     action!(7 "graph.record-compact", RecordCompact, "Records every sample from now on into a compact file."),
@@ -53,5 +54,6 @@ pub(super) const ACTIONS: &[Action] = &[
 ];
 
 fn on_a_graph(model: &Model) -> Ready {
-    only(model.screen.arm_scope().is_some(), "The graph is on the PWM, Velocity and Position screens.")
+    let is_shown = model.screen.has_graph() || model.front.graph.detached;
+    only(is_shown, "The graph is on the Device Status, PWM, Velocity and Position screens.")
 }

@@ -2,7 +2,7 @@
 
 use egui::{Key, ThemePreference};
 
-use super::{Action, Keys, Ready, always, ctrl, ctrl_shift, only};
+use super::{Action, Keys, Ready, always, ctrl, ctrl_shift, key, only, shift};
 use crate::command::Command;
 use crate::model::{Model, Screen};
 
@@ -35,6 +35,10 @@ pub(super) const ACTIONS: &[Action] = &[
     screen!(Terminal "view.command-terminal", Num9, "Commands to a Motion Mind by hand, with what they mean."),
     entry!(View 1 "view.palette", "Command Palette…", "Searches everything that can be done by name.",
         ctrl_shift(Key::P), always, |_| Command::OpenPalette),
+    entry!(View 1 "view.next-region", "Next Region", "Puts the keyboard into the next part of the window: devices, screen, controls, graph, panels, message.",
+        key(Key::F6), always, |_| Command::NextRegion { forward: true }),
+    entry!(View 1 "view.previous-region", "Previous Region", "Puts the keyboard into the part of the window before.",
+        shift(Key::F6), always, |_| Command::NextRegion { forward: false }),
     entry!(View 1 "view.world", "Simulated World", "Shows and hides the loads, batteries, switches and faults of a simulated controller.",
         ctrl(Key::B), has_world, |_| Command::ToggleWorld, on |model| model.front.world.open),
     entry!(View 1 "view.traffic", "Traffic", "Shows and hides every transaction on the wire, decoded, with its bytes.",

@@ -60,6 +60,7 @@ impl App {
         if front.phase == Phase::Closed {
             self.model.messages.dismiss();
             front.lost = None;
+            front.could_not_open = false;
             front.shows_start = false;
             front.phase = Phase::Opening { target: text };
             let opening = self.parts.opener.open(target, self.model.devices.addresses());
@@ -79,6 +80,7 @@ impl App {
         self.links.entry(id).opening = None;
         if let Some(connection) = self.model.connection_mut(id) {
             connection.phase = Phase::Closed;
+            connection.could_not_open = true;
         }
         self.say(id, Gravity::Error, why);
     }

@@ -69,6 +69,14 @@ impl App {
         }
     }
 
+    /// Turns a direction round: what was seen of it before is no longer so.
+    pub(super) fn reverse(&mut self, image: SettingsImage) {
+        match self.write_ram(image) {
+            Ok(()) => self.model.front.path.turning.forget_direction(),
+            Err(why) => self.model.messages.fail(why),
+        }
+    }
+
     pub(super) fn clamp_test(&mut self) {
         if let Some(job) = self.model.front.general_view().begin_clamp_test()
             && !self.start_for(self.model.front.id(), Owner::ClampTest, job)

@@ -22,14 +22,14 @@ pub fn toolbar_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
             }
         };
         let run = if paused { "Continue" } else { "Run" };
-        button(ui, !running, run, "Goes on, or starts the script (F6)", DebugAction::Run);
+        button(ui, !running, run, "Goes on, or starts the script (Ctrl+F5)", DebugAction::Run);
         button(ui, running, "Pause", "Stops the script before its next line; the motors go on (Ctrl+F6)", DebugAction::Pause);
         let step = |kind| DebugAction::Step(kind);
         button(ui, paused, "Step into", "Runs one line (F11)", step(StepKind::Into));
         let over = "Runs one line with the subroutines it calls (F12)";
         button(ui, paused, "Step over", over, step(StepKind::Over));
         button(ui, paused, "Step out", "Runs on until the subroutine has returned (Shift+F11)", step(StepKind::Out));
-        let cursor = "Runs on to the line of the caret (Shift+F6)";
+        let cursor = "Runs on to the line of the caret (Ctrl+F10)";
         button(ui, paused || running, "Run to cursor", cursor, DebugAction::RunToCursor);
         ui.separator();
         let hint = "A script that is started, by hand, by autorun or by a pin, stops before its first line";

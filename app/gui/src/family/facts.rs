@@ -13,6 +13,7 @@ use brushwork_values::Motor;
 
 use super::known::Known;
 use super::own::Own;
+use super::path::PathStep;
 use super::words::{self, SettingsWords};
 use crate::model::{
     HelpPage, IndicatorInfo, IndicatorState, Position, Pwm, Screen, Simulated, Tab, Velocity, state_of,
@@ -43,6 +44,16 @@ pub trait Family: Sync {
     /// The tabs above the graph of a screen that drives.
     fn tabs(&self, _screen: Screen) -> &'static [Tab] {
         &[]
+    }
+
+    /// The steps that set a unit up, in their order.
+    fn path(&self) -> &'static [PathStep] {
+        &[]
+    }
+
+    /// The settings that turn an encoder's and a motor's direction round; `{n}` stands for the number of the motor.
+    fn direction_keys(&self) -> Option<[&'static str; 2]> {
+        None
     }
 
     /// The monitored parameters at the top.

@@ -12,6 +12,7 @@ use brushwork_link::{Channel, FamilyRef};
 mod facts;
 mod known;
 mod own;
+pub mod path;
 mod words;
 
 pub use facts::{Ability, ActiveIndicator, Family, Figure, Figures, Sliders};

@@ -36,6 +36,8 @@ pub enum GraphAction {
     ForgetRuns,
     /// The graph takes the whole screen, or its share of it.
     ToggleLarge,
+    /// The graph goes into a window of its own, or back.
+    ToggleDetached,
     /// Folds the list of channels away, or unfolds it; a legend in the plot stands for it.
     ToggleList,
     /// Begins to record into a CSV file.
@@ -82,6 +84,7 @@ impl GraphAction {
             Self::KeepRun => "Keep what is in view as a run",
             Self::ForgetRuns => "Remove all runs",
             Self::ToggleLarge => "Large graph",
+            Self::ToggleDetached => "Graph in its own window",
             Self::ToggleList => "List of channels",
             Self::RecordCsv => "Record to CSV",
             Self::RecordCompact => "Record to a compact file",
@@ -120,6 +123,7 @@ impl LiveGraph {
             GraphAction::KeepRun => self.keep_run(),
             GraphAction::ForgetRuns => self.runs.clear(),
             GraphAction::ToggleLarge => self.large = !self.large,
+            GraphAction::ToggleDetached => self.detached = !self.detached,
             GraphAction::ToggleList => {
                 self.legend = match self.legend {
                     Some(_) => None,
@@ -190,7 +194,7 @@ impl LiveGraph {
 mod tests {
     use super::*;
 
-    const ALL: [GraphAction; 37] = [
+    const ALL: [GraphAction; 38] = [
         GraphAction::TogglePause,
         GraphAction::BackToLive,
         GraphAction::Earlier,
@@ -221,6 +225,7 @@ mod tests {
         GraphAction::KeepRun,
         GraphAction::ForgetRuns,
         GraphAction::ToggleLarge,
+        GraphAction::ToggleDetached,
         GraphAction::ToggleList,
         GraphAction::RecordCsv,
         GraphAction::RecordCompact,

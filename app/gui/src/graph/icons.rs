@@ -12,6 +12,12 @@ pub enum Icon {
     Cursors,
     Trigger,
     Menu,
+    /// Four corners: the whole screen.
+    Large,
+    /// The same, pointing inwards.
+    Small,
+    /// A window in front of another.
+    Window,
 }
 
 const SIZE: f32 = 11.0;
@@ -83,6 +89,25 @@ impl Icon {
                 let line = [at(0.0, 0.95), at(0.45, 0.95), at(0.55, 0.05), at(1.0, 0.05)];
                 painter.add(egui::Shape::line(line.to_vec(), stroke));
                 fill(vec![at(0.5, 0.25), at(0.8, 0.6), at(0.2, 0.6)]);
+            }
+            Self::Large | Self::Small => {
+                let stroke = Stroke::new(1.6, color);
+                // An angle at each corner, or turned towards the middle.
+                let turned = if self == Self::Small { 0.36 } else { 0.0 };
+                for (x, y) in [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)] {
+                    let inwards = |from: f32, by: f32| if from < 0.5 { from + by } else { from - by };
+                    let (cx, cy) = (inwards(x, turned), inwards(y, turned));
+                    let arm = if self == Self::Small { -0.36 } else { 0.36 };
+                    let points = [at(inwards(cx, arm), cy), at(cx, cy), at(cx, inwards(cy, arm))];
+                    painter.add(egui::Shape::line(points.to_vec(), stroke));
+                }
+            }
+            Self::Window => {
+                let stroke = Stroke::new(1.4, color);
+                let back = [at(0.35, 0.28), at(0.35, 0.0), at(1.0, 0.0), at(1.0, 0.65), at(0.72, 0.65)];
+                painter.add(egui::Shape::line(back.to_vec(), stroke));
+                let front = Rect::from_min_max(at(0.0, 0.35), at(0.65, 1.0));
+                painter.rect_stroke(front, 0.0, stroke, egui::StrokeKind::Middle);
             }
             Self::Menu => {
                 for y in [0.1, 0.45, 0.8] {

@@ -25,6 +25,8 @@ pub struct LiveGraph {
     pub rate: Rate,
     /// The graph takes the whole screen.
     pub large: bool,
+    /// The graph stands in a window of its own.
+    pub detached: bool,
     /// The channels of the legend that stands in the plot while the list beside it is folded away.
     pub legend: Option<Vec<usize>>,
     /// Input pins of the unit, for the list.
@@ -69,6 +71,7 @@ impl LiveGraph {
             align: Align::default(),
             rate: Rate::new(interval_s),
             large: false,
+            detached: false,
             legend: None,
             pins: 0,
             files: GraphFiles::default(),

@@ -352,6 +352,15 @@ impl Sheet {
         trace.lines
     }
 
+    /// A trigger that is off watches the channel that is selected, once it is switched on.
+    pub fn watch_selected(&mut self) {
+        let settings = *self.trigger.settings();
+        let watches_channel = matches!(settings.source, TriggerSource::Channel(_));
+        if self.trigger.mode() == TriggerMode::Off && watches_channel {
+            self.trigger.set(TriggerSettings { source: TriggerSource::Channel(self.selected), ..settings });
+        }
+    }
+
     /// What the trigger has to say.
     pub fn trigger_state(&self) -> Option<&'static str> {
         match (self.trigger.mode(), self.shot_s()) {

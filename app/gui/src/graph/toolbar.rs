@@ -22,10 +22,14 @@ use crate::widgets::{Numeric, choice_ui, text_field_ui};
 /// Width of what opens under a button.
 const MENU_WIDTH: f32 = 330.0;
 
+/// Width from which every button has room for its words in one row.
+const ALL_IN_WORDS: f32 = 840.0;
+
 /// The buttons; `ui` lays them out side by side.
 pub fn toolbar_ui(ui: &mut Ui, graph: &mut LiveGraph, poll: PollRate, commands: &mut Commands) {
     ui.spacing_mut().item_spacing.x = 4.0;
     ui.spacing_mut().button_padding.x = 6.0;
+    let is_narrow = ui.available_width() < ALL_IN_WORDS;
     follow_ui(ui, graph);
     ui.separator();
     time_ui(ui, graph);
@@ -43,9 +47,32 @@ pub fn toolbar_ui(ui: &mut Ui, graph: &mut LiveGraph, poll: PollRate, commands: 
         graph.act(GraphAction::ToggleCursors);
     }
     trigger_ui(ui, graph);
-    record_ui(ui, graph);
+    record_ui(ui, graph, is_narrow);
     menu(ui, Icon::Menu, "More", |ui| more_ui(ui, graph));
     rate_ui(ui, poll, commands);
+    place_ui(ui, graph);
+}
+
+/// How much of the window the graph has: one click for the whole screen, one for a window of its own.
+fn place_ui(ui: &mut Ui, graph: &mut LiveGraph) {
+    if !graph.detached {
+        let (icon, hint) = match graph.large {
+            true => (Icon::Small, "Gives the screen its room again"),
+            false => (Icon::Large, "Gives the graph the whole screen; the arm switch stays"),
+        };
+        let large = icon_button_ui(ui, icon, "", "Large graph", graph.large, 0.0);
+        if large.on_hover_text(hint).clicked() {
+            graph.act(GraphAction::ToggleLarge);
+        }
+    }
+    let hint = match graph.detached {
+        true => "Puts the graph back into its screen",
+        false => "Puts the graph into a window of its own, which stays whatever the screen",
+    };
+    let title = GraphAction::ToggleDetached.title();
+    if icon_button_ui(ui, Icon::Window, "", title, graph.detached, 0.0).on_hover_text(hint).clicked() {
+        graph.act(GraphAction::ToggleDetached);
+    }
 }
 
 /// What is going on, in one line that is always there.
@@ -223,7 +250,7 @@ fn numeric_ui(
     });
 }
 
-fn record_ui(ui: &mut Ui, graph: &mut LiveGraph) {
+fn record_ui(ui: &mut Ui, graph: &mut LiveGraph, is_narrow: bool) {
     let recording = graph.files.is_recording();
     let (icon, text, hint, action) = match recording {
         true => (Icon::Stop, "Stop rec.", "Ends the recording", GraphAction::StopRecording),
@@ -232,7 +259,8 @@ fn record_ui(ui: &mut Ui, graph: &mut LiveGraph) {
             (Icon::Record, "Record", hint, GraphAction::RecordCsv)
         }
     };
-    let response = icon_button_ui(ui, icon, text, action.title(), recording, 92.0);
+    let (text, width) = if is_narrow { ("", 0.0) } else { (text, 92.0) };
+    let response = icon_button_ui(ui, icon, text, action.title(), recording, width);
     if response.on_hover_text(hint).clicked() {
         graph.act(action);
     }
@@ -251,8 +279,6 @@ fn more_ui(ui: &mut Ui, graph: &mut LiveGraph) {
         ] {
             button_ui(ui, graph, text, action.title(), action);
         }
-        let large = if graph.large { "Small graph" } else { "Large graph" };
-        button_ui(ui, graph, large, "The graph takes the whole screen, or its share of it", A::ToggleLarge);
         let list = if graph.legend.is_some() { "Show list" } else { "Fold list" };
         button_ui(ui, graph, list, "The list of channels, or a small legend in the plot", A::ToggleList);
     });

@@ -5,7 +5,7 @@ use brushwork_link::device::Channel;
 use super::screen::Screen;
 use crate::graph::{ChannelInfo, Scale};
 
-/// The channels with the scales they begin with; those of the PWM screen are shown at first.
+/// The channels with the scales they begin with; those of the status screen are shown at first.
 pub fn graph_channels(channels: &[Channel]) -> Vec<ChannelInfo> {
     let info = |channel: &Channel| ChannelInfo {
         key: channel.key.to_owned(),
@@ -13,7 +13,7 @@ pub fn graph_channels(channels: &[Channel]) -> Vec<ChannelInfo> {
         unit: channel.unit.to_owned(),
         decimals: channel.decimals,
         scale: Scale { low: channel.range[0], high: channel.range[1] },
-        shown: Screen::Pwm.first_channels().contains(channel),
+        shown: Screen::DeviceStatus.first_channels().contains(channel),
         is_pin: channel.is_pin(),
     };
     channels.iter().map(info).collect()

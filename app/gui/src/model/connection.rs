@@ -22,6 +22,7 @@ use super::examination::ExaminationPanel;
 use super::generator::Generator;
 use super::jobs::Jobs;
 use super::loop_settings::LoopView;
+use super::path::Path;
 use super::qpps::QppsPanel;
 use super::script::ScriptWork;
 use super::traffic::Traffic;
@@ -77,6 +78,8 @@ pub struct Connection {
     pub tune: Tuning,
     /// The examination of the unit that is looked at.
     pub examination: ExaminationPanel,
+    /// How far the unit is on the guided path.
+    pub path: Path,
     /// What the screens that drive have open above their graphs.
     pub drawers: Drawers,
     pub loops: LoopView,
@@ -99,6 +102,8 @@ pub struct Connection {
     pub bus: Option<Monitor>,
     /// Why the last link is gone, if not by request.
     pub lost: Option<Lost>,
+    /// The last try to open the link came to nothing.
+    pub could_not_open: bool,
     /// The start page is asked for, though there is something left of the last link.
     pub shows_start: bool,
     /// The worlds of the simulated units, while they run.
@@ -184,6 +189,7 @@ impl Connection {
             qpps: QppsPanel::default(),
             tune: Tuning::default(),
             examination: ExaminationPanel::default(),
+            path: Path::default(),
             drawers: Drawers::default(),
             loops: LoopView::default(),
             history: History::default(),
@@ -191,11 +197,12 @@ impl Connection {
             own: family::all().iter().filter_map(|family| family.own()).collect(),
             debug: Debugging::default(),
             traffic: Traffic::default(),
-            graph_of: Screen::Pwm,
+            graph_of: Screen::default(),
             graph_choices: BTreeMap::new(),
             world: WorldPanel::default(),
             bus: None,
             lost: None,
+            could_not_open: false,
             shows_start: false,
             worlds: None,
             world_unit: 0,
@@ -509,6 +516,7 @@ impl Connection {
                 self.update_homed();
                 self.general.take_signals(&sample.signals);
                 self.tune.note_sample(&sample, self.graph_of);
+                self.path.turning.note_sample(&sample);
                 self.own.iter_mut().for_each(|own| own.note_sample(&sample));
                 self.graph.take(&sample);
             }
@@ -563,15 +571,16 @@ impl Connection {
 
     /// What is known of one unit's motors says nothing of another's.
     fn forget_unit(&mut self) {
+        self.path = Path::default();
         self.own.iter_mut().for_each(|own| own.forget_unit());
         self.generator.forget();
         self.script.forget();
         self.qpps.forget();
     }
 
-    /// The graph shows the channels of a screen that drives; for other screens it stays as it is.
+    /// The graph shows the channels of a screen that has one; for other screens it stays as it is.
     pub(super) fn graph_for(&mut self, screen: Screen) {
-        if screen.arm_scope().is_none() || screen == self.graph_of {
+        if !screen.has_graph() || screen == self.graph_of {
             return;
         }
         let left = std::mem::replace(&mut self.graph_of, screen);
@@ -588,10 +597,20 @@ impl Connection {
             let at_first = || at_start.iter().any(|first| first.key == channel.info.key);
             channel.shown = chosen.and_then(|chosen| chosen.get(index)).copied().unwrap_or_else(at_first);
         }
+        let is_first_time = chosen.is_none();
         // The axis at the side is of a line that is there.
         let sheet = &mut self.graph.live;
+        let first = at_start
+            .first()
+            .and_then(|first| sheet.channels.iter().position(|channel| channel.info.key == first.key));
+        if let Some(first) = first.filter(|_| is_first_time) {
+            sheet.selected = first;
+        }
         if !sheet.channels.get(sheet.selected).is_some_and(|channel| channel.shown) {
             sheet.selected = sheet.channels.iter().position(|channel| channel.shown).unwrap_or_default();
+        }
+        if is_first_time {
+            sheet.watch_selected();
         }
     }
 }

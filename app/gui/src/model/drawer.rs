@@ -9,6 +9,8 @@ pub enum Tab {
     Settings,
     /// The speed loop below the position loop.
     VelocityLoop,
+    /// Which way motor and encoder turn.
+    Direction,
     Generator,
     Qpps,
     /// Steps with the gains turned between them (Motion Mind manual 3.14).
@@ -25,6 +27,7 @@ impl Tab {
             (Self::Settings, Screen::Pwm) => "L, R and QPPS",
             (Self::Settings, Screen::Position) => "Position loop",
             (Self::Settings | Self::VelocityLoop, _) => "Velocity loop",
+            (Self::Direction, _) => "Direction",
             (Self::Generator, _) => "Generator",
             (Self::Qpps, _) => "Measure QPPS",
             (Self::Steps, _) => "Step response",

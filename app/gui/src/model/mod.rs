@@ -25,6 +25,8 @@ pub mod link;
 pub mod loop_settings;
 pub mod message;
 pub mod palette;
+pub mod path;
+mod path_steps;
 pub mod position;
 pub mod pwm;
 pub mod qpps;
@@ -105,16 +107,18 @@ pub struct Appearance {
     pub plain: bool,
 }
 
-/// Widths that were dragged, in points.
+/// What was dragged: widths in points, and parts of a height.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layout {
     pub left_width: f32,
     pub world_width: f32,
+    /// What the graph has of the height of each screen, where its bar was moved.
+    graph_parts: [Option<f32>; Screen::ALL.len()],
 }
 
 impl Default for Layout {
     fn default() -> Self {
-        Self { left_width: 216.0, world_width: 292.0 }
+        Self { left_width: 216.0, world_width: 292.0, graph_parts: [None; Screen::ALL.len()] }
     }
 }
 
@@ -123,7 +127,17 @@ impl Layout {
     pub const LEFT_RANGE: std::ops::RangeInclusive<f32> = 208.0..=340.0;
     pub const WORLD_RANGE: std::ops::RangeInclusive<f32> = 280.0..=420.0;
 
-    /// Sets both; what makes no sense stays as it is.
+    /// What the graph has of a screen's height, if its bar was moved.
+    pub fn graph_part(&self, screen: Screen) -> Option<f32> {
+        self.graph_parts[screen as usize]
+    }
+
+    /// Moves the bar above a screen's graph; what makes no sense leaves it where it was at first.
+    pub fn set_graph_part(&mut self, screen: Screen, part: Option<f32>) {
+        self.graph_parts[screen as usize] = part.filter(|part| (0.0..=1.0).contains(part));
+    }
+
+    /// Sets both widths; what makes no sense stays as it is.
     pub fn set(&mut self, left_width: f32, world_width: f32) {
         if Self::LEFT_RANGE.contains(&left_width) {
             self.left_width = left_width;

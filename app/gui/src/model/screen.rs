@@ -69,6 +69,11 @@ impl Screen {
         }
     }
 
+    /// Whether the screen shows the graph, with channels of its own.
+    pub const fn has_graph(self) -> bool {
+        self.arm_scope().is_some() || matches!(self, Self::DeviceStatus)
+    }
+
     /// Whether the screen shows settings of the control loops.
     pub const fn has_loops(self) -> bool {
         matches!(self, Self::Pwm | Self::Velocity | Self::Position)
@@ -89,9 +94,9 @@ impl Screen {
                 C::M2_POSITION,
                 C::M2_VELOCITY,
             ],
+            Self::DeviceStatus => &[C::MAIN_BATTERY, C::M1_CURRENT, C::M2_CURRENT, C::TEMPERATURE_1],
             Self::Pwm
             | Self::MclEditor
-            | Self::DeviceStatus
             | Self::GeneralSettings
             | Self::Motion
             | Self::Inputs

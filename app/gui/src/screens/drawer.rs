@@ -1,7 +1,8 @@
-//! The drawer above the graph: its tabs, and what the open one shows.
+//! The drawer between the sliders and the graph: its tabs, and what the open one shows.
 
 use egui::{Frame, Margin, Stroke, Ui};
 
+use super::direction::direction_ui;
 use super::face;
 use super::generator::generator_ui;
 use super::loops::loops_ui;
@@ -17,24 +18,29 @@ pub fn is_tuning(model: &Model) -> bool {
     model.front.open_tab(model.screen) == Some(Tab::Tune)
 }
 
+/// The tabs, in a row of the screen's head.
+pub fn tabs_ui(ui: &mut Ui, model: &mut Model) {
+    let screen = model.screen;
+    for tab in model.front.family().tabs(screen) {
+        let is_open = model.front.open_tab(screen) == Some(*tab);
+        let label = ui.selectable_label(is_open, title(model, screen, *tab));
+        let hint = if is_open { "Closes it and leaves its room to the graph" } else { "Opens it below" };
+        if label.on_hover_text(hint).clicked() {
+            model.front.drawers.press(screen, *tab);
+        }
+    }
+}
+
+/// What the open tab shows, below the sliders.
 pub fn drawer_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let screen = model.screen;
-    ui.horizontal(|ui| {
-        for tab in model.front.family().tabs(screen) {
-            let is_open = model.front.open_tab(screen) == Some(*tab);
-            let label = ui.selectable_label(is_open, title(model, screen, *tab));
-            let hint = if is_open { "Closes it and leaves its room to the graph" } else { "Opens it" };
-            if label.on_hover_text(hint).clicked() {
-                model.front.drawers.press(screen, *tab);
-            }
-        }
-    });
     let Some(tab) = model.front.open_tab(screen).filter(|tab| *tab != Tab::Tune) else { return };
     let outline = Stroke::new(1.0, Palette::of(ui).line);
     Frame::new().stroke(outline).corner_radius(4.0).inner_margin(Margin::symmetric(10, 6)).show(ui, |ui| {
         ui.set_width(ui.available_width());
         match tab {
             Tab::Settings | Tab::VelocityLoop => loops_ui(ui, model, columns(screen, tab), commands),
+            Tab::Direction => direction_ui(ui, model, commands),
             Tab::Generator => generator_ui(ui, model, commands),
             Tab::Qpps => qpps_ui(ui, model, commands),
             Tab::ByHand => by_hand_ui(ui, model, commands),

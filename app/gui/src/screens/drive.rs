@@ -4,12 +4,13 @@ use brushwork_link::device::{ArmScope, Channel};
 use brushwork_values::Motor;
 use egui::{Align, Frame, Label, Layout, Margin, RichText, ScrollArea, Stroke, Ui, UiBuilder, vec2};
 
-use super::drawer::{drawer_ui, is_tuning};
+use super::drawer::{drawer_ui, is_tuning, tabs_ui};
+use super::graph_place::graph_place_ui;
+use super::split::{GRAPH_PART, Split};
 use super::stream::stream_ui;
-use super::title_ui;
 use crate::command::{Command, Commands};
 use crate::family::{Ability, Family};
-use crate::graph::panel;
+use crate::focus::{self, Region, region_ui};
 use crate::keys::stop_words;
 use crate::model::{Arming, Direction, IndicatorState, LinkView, Model, Setpoints};
 use crate::theme::Palette;
@@ -18,13 +19,13 @@ use crate::widgets::jog::{self, jog_ui};
 use crate::widgets::{Numeric, Readout, arm_switch_ui};
 
 /// Height of a motor's row.
-const ROW_HEIGHT: f32 = 34.0;
+const ROW_HEIGHT: f32 = 32.0;
 
-/// In a small window the screen scrolls rather than give the graph less.
-const LEAST_GRAPH_HEIGHT: f32 = 176.0;
+/// In a small window the screen scrolls rather than give guided tuning less.
 const LEAST_GUIDE_HEIGHT: f32 = 320.0;
-/// Height of a screen that has room for the drawer and a graph.
-const ROOM_FOR_DRAWER: f32 = 520.0;
+/// Height of head, arm switch and sliders, and of a drawer below them: where both leave the graph its part, the drawer is open at first.
+const ROOM_FOR_CONTROLS: f32 = 194.0;
+const ROOM_FOR_DRAWER: f32 = 130.0;
 const BAR_WIDTH: f32 = 10.0;
 
 const RISK: &str = "While armed, a slider moves its motor at once. Keep clear.";
@@ -33,7 +34,8 @@ const RISK_OF_ONE: &str = "While armed, the slider moves the motor at once. Keep
 const RISK_OF_RUN: &str =
     "While armed, starting the test turns the motor at up to full speed. Keep hands and cables clear.";
 
-/// What a screen that drives is made of: its head, its arm switch, its sliders in `controls_ui`, the drawer and the graph.
+/// What a screen that drives is made of: its head, its arm switch, its sliders in `controls_ui`, the drawer, what the arming says, and the
+/// graph.
 pub fn drive_ui(
     ui: &mut Ui,
     model: &mut Model,
@@ -42,52 +44,67 @@ pub fn drive_ui(
     controls_ui: impl FnOnce(&mut Ui, &mut Model),
 ) {
     let room = ui.available_rect_before_wrap();
-    model.front.drawers.has_room = room.height() >= ROOM_FOR_DRAWER;
+    let wanted = GRAPH_PART * ui.ctx().content_rect().height();
+    model.front.drawers.has_room = room.height() - ROOM_FOR_CONTROLS - ROOM_FOR_DRAWER >= wanted;
     // The scroll bar stands in the margin of the window, beside everything.
     let with_bar = room.with_max_x(room.right() + BAR_WIDTH);
     ui.scope_builder(UiBuilder::new().max_rect(with_bar), |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.set_max_width(room.width());
-            let top = ui.cursor().top();
-            title_ui(ui, title, note);
+            ui.spacing_mut().item_spacing.y = 4.0;
+            let bottom = ui.cursor().top() + room.height();
+            head_ui(ui, model, title, note);
             arm_ui(ui, scope, &model.front.link, model.front.family(), commands);
-            // A large graph takes the room of the sliders. What they asked for goes on; nobody can hold a jog button.
+            if is_tuning(model) {
+                region_ui(ui, Region::Controls);
+            }
+            // Guided tuning and a large graph take the room of the sliders. What they asked for goes on; nobody can hold a jog button.
             if is_tuning(model) {
                 model.front.release_jogs();
+                notices_ui(ui, &model.front.link);
+                return tuning_ui(ui, model, bottom, commands);
+            }
+            let split = Split::of(ui, model.screen, bottom);
+            split.above_ui(ui, model, |ui, model| {
                 ui.add_space(2.0);
-                drawer_ui(ui, model, commands);
-            } else if model.front.graph.large {
-                model.front.release_jogs();
-            } else {
-                ui.add_space(2.0);
+                region_ui(ui, Region::Controls);
                 controls_ui(ui, model);
-                ui.add_space(2.0);
                 drawer_ui(ui, model, commands);
-            }
-            ui.add_space(4.0);
-            let least = if is_tuning(model) { LEAST_GUIDE_HEIGHT } else { LEAST_GRAPH_HEIGHT };
-            let height = (room.height() - (ui.cursor().top() - top)).max(least);
-            // A place of exact size: what does not fit into it cannot make the screen scroll.
-            let (place, _) = ui.allocate_exact_size(vec2(room.width(), height), egui::Sense::hover());
-            let layout = Layout::top_down(Align::Min);
-            let mut inside = ui.new_child(UiBuilder::new().max_rect(place).layout(layout));
-            if is_tuning(model) {
-                guide_ui(&mut inside, model, commands);
-            } else {
-                graph_ui(&mut inside, model, commands);
-            }
+            });
+            notices_ui(ui, &model.front.link);
+            split.graph_ui(ui, model, commands);
         });
     });
 }
 
-/// The switch, the risk, and what stands in the way.
-#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
+/// Guided tuning in what is left.
+fn tuning_ui(ui: &mut Ui, model: &mut Model, bottom: f32, commands: &mut Commands) {
+    ui.add_space(4.0);
+    let height = (bottom - ui.cursor().top()).max(LEAST_GUIDE_HEIGHT);
+    // A place of exact size: what does not fit into it cannot make the screen scroll.
+    let (place, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), egui::Sense::hover());
+    let layout = Layout::top_down(Align::Min);
+    guide_ui(&mut ui.new_child(UiBuilder::new().max_rect(place).layout(layout)), model, commands);
+}
+
+/// The screen's title, the tabs of its drawer, and a line of explanation.
+fn head_ui(ui: &mut Ui, model: &mut Model, title: &str, note: &str) {
+    ui.horizontal(|ui| {
+        focus::heading_ui(ui, title).on_hover_text(note);
+        ui.add_space(6.0);
+        tabs_ui(ui, model);
+        ui.add_space(6.0);
+        ui.add(Label::new(RichText::new(note).weak()).truncate());
+    });
+}
+
+/// The switch and the risk. What stands in the way of arming is in [`notices_ui`], so that nothing here moves when it is pressed.
 pub fn arm_ui(ui: &mut Ui, scope: ArmScope, link: &LinkView, family: &dyn Family, commands: &mut Commands) {
     let palette = Palette::of(ui);
     let armed = link.arming.is_armed_for(scope);
     // As thick armed as disarmed, so that nothing moves.
     let outline = Stroke::new(1.5, if armed { palette.warning } else { palette.line });
-    Frame::new().stroke(outline).corner_radius(4.0).inner_margin(Margin::symmetric(10, 6)).show(ui, |ui| {
+    Frame::new().stroke(outline).corner_radius(4.0).inner_margin(Margin::symmetric(10, 4)).show(ui, |ui| {
         ui.set_width(ui.available_width());
         ui.horizontal(|ui| {
             let waiting = matches!(link.arming, Arming::Asked(_));
@@ -95,26 +112,37 @@ pub fn arm_ui(ui: &mut Ui, scope: ArmScope, link: &LinkView, family: &dyn Family
                 commands.push(if armed { Command::Disarm } else { Command::Arm(scope) });
             }
             ui.vertical(|ui| {
-                let (risk, what) = match scope {
-                    ArmScope::ClampTest => (RISK_OF_RUN, "both motors"),
-                    _ if family.motors(link.identity()).len() == 1 => (RISK_OF_ONE, "it"),
-                    _ => (RISK, "both"),
-                };
+                ui.spacing_mut().item_spacing.y = 1.0;
+                let (risk, what) = risk(scope, family.motors(link.identity()).len());
                 ui.label(format!("{risk} {} stops {what}.", stop_words(ui.ctx())));
-                let color = palette.weak_text;
-                ui.label(RichText::new(fallback_text(link.arming)).small().color(color));
+                let text = RichText::new(fallback_text(link.arming)).small().color(palette.weak_text);
+                ui.add(Label::new(text).truncate());
             });
         });
         if link.stream.is_none() && family.lacks(Ability::Streams).is_none() {
             stream_ui(ui, "port: its time-out is what stops the motors if this program dies.", commands);
         }
-        for refusal in &link.refusals {
-            IndicatorState::Error.line_ui(ui, &refusal.to_string());
-        }
-        for warning in &link.warnings {
-            IndicatorState::Warning.line_ui(ui, warning);
-        }
     });
+}
+
+/// What arming risks, and what Stop stops.
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
+fn risk(scope: ArmScope, motors: usize) -> (&'static str, &'static str) {
+    match scope {
+        ArmScope::ClampTest => (RISK_OF_RUN, "both motors"),
+        _ if motors == 1 => (RISK_OF_ONE, "it"),
+        _ => (RISK, "both"),
+    }
+}
+
+/// Why arming was refused, and what an armed screen has to be warned of. It takes its room from what stands below the controls.
+pub fn notices_ui(ui: &mut Ui, link: &LinkView) {
+    for refusal in &link.refusals {
+        IndicatorState::Error.line_ui(ui, &refusal.to_string());
+    }
+    for warning in &link.warnings {
+        IndicatorState::Warning.line_ui(ui, warning);
+    }
 }
 
 /// What happens if this program dies.
@@ -220,14 +248,11 @@ pub fn on_release_ui(ui: &mut Ui, setpoints: &mut Setpoints) {
     ui.checkbox(&mut setpoints.on_release, "On release").on_hover_text(hint);
 }
 
-/// The live graph and its list of channels, in what is left of the screen.
-fn graph_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-    panel::graph_ui(ui, &mut model.front.graph, model.front.poll, commands);
-}
-
 /// The graph instead of the rest of a screen that drives. The arm switch stays, and so does what it says.
 pub fn large_graph_ui(ui: &mut Ui, scope: ArmScope, model: &mut Model, commands: &mut Commands) {
+    model.front.release_jogs();
     arm_ui(ui, scope, &model.front.link, model.front.family(), commands);
+    notices_ui(ui, &model.front.link);
     ui.add_space(6.0);
-    graph_ui(ui, model, commands);
+    graph_place_ui(ui, model, commands);
 }

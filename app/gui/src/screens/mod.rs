@@ -3,23 +3,27 @@
 use egui::{Align, Layout, RichText, Ui};
 
 use super::command::Commands;
+use super::focus;
 use super::mcl;
 use super::model::screen::Screen;
 use super::model::{Model, Phase};
 
 pub mod canopen;
+mod direction;
 mod drawer;
 pub(super) mod drive;
 pub mod examination;
 pub mod face;
 pub(super) mod general;
 mod generator;
+pub(super) mod graph_place;
 mod loops;
 pub mod offline;
 mod position;
 mod progress;
 mod pwm;
 mod qpps;
+mod split;
 mod start;
 pub(super) mod status;
 pub mod stream;
@@ -30,7 +34,8 @@ pub fn screen_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     if !model.is_connected() && model.screen != Screen::MclEditor {
         return offline::offline_ui(ui, model, commands);
     }
-    let drives = model.screen.arm_scope().filter(|_| model.front.graph.large && model.is_connected());
+    let is_large = model.front.graph.large && !model.front.graph.detached && !drawer::is_tuning(model);
+    let drives = model.screen.arm_scope().filter(|_| is_large && model.is_connected());
     if let Some(scope) = drives.filter(|scope| scope.allows_motion()) {
         return drive::large_graph_ui(ui, scope, model, commands);
     }
@@ -80,7 +85,7 @@ pub(super) fn not_connected_text(phase: &Phase) -> String {
 /// The screen's title, with a line of explanation at its right.
 pub(super) fn title_ui(ui: &mut Ui, title: &str, note: &str) {
     ui.horizontal(|ui| {
-        ui.heading(title);
+        focus::heading_ui(ui, title);
         ui.weak(note);
     });
     ui.add_space(4.0);

@@ -2,9 +2,9 @@
 
 use egui::{Color32, CornerRadius, Frame, Margin, RichText, Role, Stroke, Ui, WidgetInfo};
 
+use super::graph_place::graph_place_ui;
 use super::{not_connected_text, nothing_ui, start, status};
 use crate::command::{Command, Commands};
-use crate::graph::panel;
 use crate::model::{Connection, IndicatorState, Model, Phase, Screen};
 use crate::theme::Palette;
 
@@ -24,7 +24,7 @@ pub fn offline_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         let height = ui.available_height();
         return status::history_ui(ui, &mut model.front.history, height);
     }
-    panel::graph_ui(ui, &mut model.front.graph, model.front.poll, commands);
+    graph_place_ui(ui, model, commands);
 }
 
 /// Whether there is something to see of what was: events, or the graph of a screen that drives.
@@ -59,6 +59,7 @@ fn band_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         ui.set_width(ui.available_width());
         let response = ui.horizontal_wrapped(|ui| state.line_ui(ui, &text)).response;
         response.widget_info(|| WidgetInfo::labeled(Role::Alert, true, &text));
+        // How long ago it was changes all the time: what it says is read out by the newest event, once.
         ui.horizontal(|ui| {
             if let Some(target) = target {
                 let hint = "Opens the same link again. Nothing is armed by it";

@@ -5,6 +5,7 @@ use egui::{Align, Button, Frame, Layout, Margin, RichText, ScrollArea, Stroke, U
 
 use crate::command::{Command, Commands};
 use crate::family::{self, Family};
+use crate::focus::{self, Region, region_ui};
 use crate::graph::files::OpenAs;
 use crate::model::devices::{Choice, described};
 use crate::model::{Model, Screen};
@@ -18,8 +19,9 @@ const TWO_COLUMNS_FROM: f32 = 640.0;
 const RECENT_SHOWN: usize = 4;
 
 pub fn start_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-    ui.heading("Start");
+    focus::heading_ui(ui, "Start");
     ui.add_space(4.0);
+    region_ui(ui, Region::Controls);
     let columns = if ui.available_width() < TWO_COLUMNS_FROM { 1 } else { 2 };
     ScrollArea::vertical().show(ui, |ui| {
         ui.columns(columns, |ui| {

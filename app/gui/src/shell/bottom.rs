@@ -1,9 +1,10 @@
 //! The family's indicators by their abbreviations, and the figures of the link.
 
 use brushwork_link::exchange::LinkStatistics;
+use egui::accesskit::Live;
 use egui::{Align2, Label, RichText, Role, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
-use crate::model::Model;
+use crate::model::{History, IndicatorState, Model};
 use crate::theme::{self, Palette};
 use crate::widgets::indicator;
 
@@ -11,6 +12,7 @@ const LINK_WIDTH: f32 = 226.0;
 const HEIGHT: f32 = 38.0;
 
 pub fn bottom_ui(ui: &mut Ui, model: &Model) {
+    announce_ui(ui, &model.front.history);
     ui.spacing_mut().item_spacing.x = 4.0;
     ui.horizontal(|ui| {
         let indicators = model.front.family().indicators();
@@ -27,6 +29,18 @@ pub fn bottom_ui(ui: &mut Ui, model: &Model) {
         }
         link_ui(ui, model);
     });
+}
+
+/// The newest event, for a screen reader alone: it is read out as it comes. What is grave breaks into what is being read.
+fn announce_ui(ui: &mut Ui, history: &History) {
+    let place = egui::Rect::from_min_size(ui.cursor().min, egui::Vec2::ZERO);
+    let response = ui.interact(place, egui::Id::unique("newest event"), Sense::hover());
+    let newest = history.from_newest(0);
+    let text = newest.map_or_else(String::new, |entry| entry.text.clone());
+    let is_grave = newest.is_some_and(|entry| entry.kind.state() >= IndicatorState::Warning);
+    response.widget_info(|| WidgetInfo::labeled(Role::Status, true, format!("Newest event: {text}")));
+    let live = if is_grave { Live::Assertive } else { Live::Polite };
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_live(live));
 }
 
 /// Two lines of figures at fixed places.

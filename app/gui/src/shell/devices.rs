@@ -81,6 +81,10 @@ fn rows(model: &Model) -> Vec<Row> {
             let mut other =
                 row(model, Choice::Connection(connection.id()), &place_of(target), target, "named below");
             other.can_be_forgotten = !other.is_open;
+            // Nobody looks whether it is there.
+            if other.state == State::AVAILABLE {
+                other.state = State::CLOSED;
+            }
             rows.push(other);
         }
     }
@@ -112,15 +116,20 @@ fn answered(identity: &Identity) -> String {
 }
 
 /// What is so with a device: a word, and an indicator that says the same by colour and shape.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 struct State(&'static str, IndicatorState);
 
 impl State {
     const AVAILABLE: Self = Self("available", IndicatorState::Unknown);
+    const CLOSED: Self = Self("closed", IndicatorState::Unknown);
     const GONE: Self = Self("gone", IndicatorState::Warning);
 
     fn of(connection: &Connection) -> Self {
         match &connection.phase {
+            Phase::Closed if connection.lost.is_some() => Self("link lost", IndicatorState::Error),
+            Phase::Closed if connection.could_not_open => {
+                Self("could not be opened", IndicatorState::Warning)
+            }
             Phase::Closed => Self::AVAILABLE,
             Phase::Opening { .. } => Self("connecting", IndicatorState::Active),
             Phase::Closing { .. } => Self("disconnecting", IndicatorState::Active),

@@ -4,6 +4,7 @@ use egui::{Align, Button, Label, Layout, Panel, RichText, Role, ScrollArea, Ui, 
 
 use super::devices::devices_ui;
 use crate::command::{Command, Commands};
+use crate::focus::{Region, region_ui};
 use crate::model::{Connection, Model};
 use crate::theme::Palette;
 use crate::widgets::{heading_ui, stop};
@@ -22,6 +23,7 @@ pub fn left_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     );
     egui::CentralPanel::no_frame().show(ui, |ui| {
         ScrollArea::vertical().show(ui, |ui| {
+            region_ui(ui, Region::Devices);
             devices_ui(ui, model, commands);
             ui.add_space(10.0);
             screens_ui(ui, model, commands);

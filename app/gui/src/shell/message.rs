@@ -1,9 +1,11 @@
 //! The message line: always there and always as high, so that a message moves nothing.
 
+use egui::accesskit::Live;
 use egui::{Align, Label, Layout, RichText, Role, Ui, WidgetInfo, vec2};
 
 use super::marks;
 use crate::command::{Command, Commands};
+use crate::focus::{Region, region_ui};
 use crate::model::message::Message;
 use crate::model::{Gravity, IndicatorState, Model};
 
@@ -11,6 +13,7 @@ const HEIGHT: f32 = 36.0;
 const BUTTON_WIDTH: f32 = 76.0;
 
 pub fn message_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
+    region_ui(ui, Region::Message);
     ui.allocate_ui_with_layout(
         vec2(ui.available_width(), HEIGHT),
         Layout::left_to_right(Align::Center),
@@ -44,6 +47,11 @@ fn shown_ui(ui: &mut Ui, message: &Message, commands: &mut Commands) {
         let text = ui.add(Label::new(&words).wrap()).on_hover_text(&words);
         let spoken = format!("{}: {words}", word(message.gravity));
         text.widget_info(|| WidgetInfo::labeled(Role::Alert, true, &spoken));
+        let live = match message.gravity {
+            Gravity::Note => Live::Polite,
+            Gravity::Warning | Gravity::Error => Live::Assertive,
+        };
+        ui.ctx().accesskit_node_builder(text.id, |node| node.set_live(live));
     });
     if ui.button("Dismiss").clicked() {
         commands.push(Command::DismissMessage);

@@ -3,6 +3,7 @@
 use egui::{CentralPanel, Frame, Margin, Panel, ScrollArea, Ui};
 
 use super::command::Commands;
+use super::focus::{Region, region_ui};
 use super::model::{Layout, Model};
 use super::theme::Palette;
 use super::{help, screens, traffic, world};
@@ -40,16 +41,17 @@ pub fn shell_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         let world = Panel::right("world").resizable(true).default_size(model.layout.world_width);
         let world = world.size_range(Layout::WORLD_RANGE).frame(panel);
         let world = world.show(ui, |ui| {
+            region_ui(ui, Region::World);
             ScrollArea::vertical().show(ui, |ui| world::world_ui(ui, model, commands));
         });
         model.layout.world_width = world.response.rect.width();
     }
     if model.front.traffic.open {
         let traffic = Panel::bottom("traffic").resizable(true).default_size(TRAFFIC_HEIGHT);
-        traffic
-            .size_range(TRAFFIC_RANGE)
-            .frame(panel)
-            .show(ui, |ui| traffic::traffic_ui(ui, model, commands));
+        traffic.size_range(TRAFFIC_RANGE).frame(panel).show(ui, |ui| {
+            region_ui(ui, Region::Traffic);
+            traffic::traffic_ui(ui, model, commands);
+        });
     }
     let central = Frame::new().fill(palette.panel).inner_margin(Margin::symmetric(12, 10));
     CentralPanel::no_frame().frame(central).show(ui, |ui| screens::screen_ui(ui, model, commands));
@@ -58,5 +60,6 @@ pub fn shell_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     screens::face::all().for_each(|face| face.windows_ui(ui.ctx(), model, commands, room));
     screens::canopen::canopen_ui(ui.ctx(), model, commands, room);
     screens::examination::examination_ui(ui.ctx(), model, commands, room);
+    screens::graph_place::detached_ui(ui.ctx(), model, commands);
     palette::palette_ui(ui.ctx(), model, commands);
 }

@@ -8,10 +8,22 @@ use crate::theme::Palette;
 /// Height in points: big enough to hit in a hurry.
 const HEIGHT: f32 = 64.0;
 
+/// Height where it stands in a row with others.
+const SMALL_HEIGHT: f32 = 28.0;
+
 /// Fills the width. `connected` only changes how it looks: pressing it is never refused. It names the keys that stop at this moment.
 pub fn stop_ui(ui: &mut Ui, connected: bool) -> Response {
+    sized_ui(ui, connected, HEIGHT)
+}
+
+/// The same as high as other buttons.
+pub fn small_stop_ui(ui: &mut Ui, connected: bool) -> Response {
+    sized_ui(ui, connected, SMALL_HEIGHT)
+}
+
+fn sized_ui(ui: &mut Ui, connected: bool, height: f32) -> Response {
     let palette = Palette::of(ui);
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Stop All"));
     let keys = stop_words(ui.ctx());
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_keyboard_shortcut(keys));
@@ -27,6 +39,11 @@ pub fn stop_ui(ui: &mut Ui, connected: bool) -> Response {
     };
     let painter = ui.painter();
     painter.rect(rect, 6.0, fill, ring, StrokeKind::Inside);
+    if height < HEIGHT {
+        let words = format!("STOP ALL  ({keys})");
+        painter.text(rect.center(), Align2::CENTER_CENTER, words, FontId::proportional(13.5), text);
+        return response;
+    }
     painter.text(
         rect.center() - vec2(0.0, 8.0),
         Align2::CENTER_CENTER,

@@ -140,7 +140,7 @@ fn steps_show_each_line_in_the_text_and_the_keys_do_the_same_as_the_buttons() {
     assert_eq!((line(&mut bench), halted(&mut bench)), (13, Some(13)));
     bench.key_with(Modifiers::SHIFT, Key::F11);
     assert_eq!(line(&mut bench), 8);
-    bench.key(Key::F6);
+    bench.key_with(Modifiers::COMMAND, Key::F5);
     until(&mut bench, "it runs", |bench| bench.model().front.debug.is_running());
     assert_eq!(halted(&mut bench), None);
     bench.key_with(Modifiers::COMMAND, Key::F6);
@@ -161,7 +161,7 @@ fn the_caret_is_where_a_script_runs_to_and_where_a_breakpoint_is_set() {
     bench.model().mcl.front_mut().go_to_line(6);
     bench.key_with(Modifiers::COMMAND, Key::F8);
     assert!(bench.sees("Line 7"));
-    bench.key_with(Modifiers::SHIFT, Key::F6);
+    bench.key_with(Modifiers::COMMAND, Key::F10);
     assert_eq!(line(&mut bench), 7);
     assert!(bench.sees_part("Paused at the breakpoint on line 7, reached for the first time."));
 }

@@ -339,6 +339,7 @@ fn after_connecting_the_settings_are_known_on_every_screen_without_a_word() {
     // What a screen that drives writes is known here too.
     bench.press("Velocity Settings");
     bench.pass_ms(500);
+    bench.open_tab("Velocity loop");
     bench.enter("M1 Velocity P", "2.5");
     bench.press("Apply to RAM");
     bench.pass_ms(2000);

@@ -509,7 +509,6 @@ fn an_earlier_run_lies_beneath_the_present_one_aligned_by_its_command() {
 fn the_large_graph_takes_the_screen_and_leaves_the_arm_switch() {
     let mut bench = bench();
     let before = plot(&bench).height();
-    bench.press("More");
     bench.press("Large graph");
     bench.pass_ms(200);
     assert!(plot(&bench).height() > before + 60.0);

@@ -137,14 +137,25 @@ fn every_write_from_every_screen_that_drives_has_a_backup_of_what_was_there() {
     bench.connect();
     let unit = unit(&mut bench);
     let mut writes = 0;
-    for (screen, field, (motor, column), values) in [
-        ("PWM Settings", "M1 L", (Motor::M1, "inductance_henries"), ["0.01", "0.02", "0"]),
-        ("Velocity Settings", "M1 Velocity P", (Motor::M1, "velocity.p"), ["2", "3", "2.5"]),
-        ("Velocity Settings", "M2 QPPS", (Motor::M2, "velocity.qpps"), ["9000", "9500", "9000"]),
-        ("Position Settings", "M2 Position P", (Motor::M2, "position.p"), ["7", "8", "9"]),
+    for ((screen, tab), field, (motor, column), values) in [
+        (("PWM Settings", "L, R and QPPS"), "M1 L", (Motor::M1, "inductance_henries"), ["0.01", "0.02", "0"]),
+        (
+            ("Velocity Settings", "Velocity loop"),
+            "M1 Velocity P",
+            (Motor::M1, "velocity.p"),
+            ["2", "3", "2.5"],
+        ),
+        (
+            ("Velocity Settings", "Velocity loop"),
+            "M2 QPPS",
+            (Motor::M2, "velocity.qpps"),
+            ["9000", "9500", "9000"],
+        ),
+        (("Position Settings", "Position loop"), "M2 Position P", (Motor::M2, "position.p"), ["7", "8", "9"]),
     ] {
         bench.press(screen);
         bench.pass_ms(1000);
+        bench.open_tab(tab);
         for value in values {
             let before = bench
                 .model()
@@ -175,6 +186,7 @@ fn a_backup_tells_the_truth_after_the_controller_restarted_in_between() {
     bench.connect();
     bench.press("Velocity Settings");
     bench.pass_ms(1000);
+    bench.open_tab("Velocity loop");
     for value in ["2", "3"] {
         bench.enter("M1 Velocity P", value);
         bench.enter("M2 Velocity P", value);
@@ -198,6 +210,7 @@ fn a_small_write_that_is_cut_is_told_at_the_next_connection() {
     bench.connect();
     bench.press("Velocity Settings");
     bench.pass_ms(1000);
+    bench.open_tab("Velocity loop");
     bench.enter("M1 Velocity P", "2");
     bench.enter("M2 Velocity P", "2");
     bench.press("Apply to RAM");

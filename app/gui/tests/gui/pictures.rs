@@ -120,7 +120,7 @@ fn the_pwm_screen_while_it_is_armed() {
     let mut bench = Bench::sized(SMALLEST, Theme::Dark);
     let model = bench.model();
     fed(model, 0);
-    model.screen = Screen::Pwm;
+    model.turn_to(Screen::Pwm);
     model.front.link.take(Event::Armed {
         address: 0x80,
         scope: ArmScope::Pwm,

@@ -16,6 +16,7 @@ fn opened() -> Bench {
     bench.connect();
     bench.press("Position Settings");
     bench.pass_ms(1000);
+    bench.open_tab("Position loop");
     bench
 }
 

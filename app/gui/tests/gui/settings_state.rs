@@ -62,6 +62,7 @@ fn p_edited_in_general_settings_is_the_same_edit_on_the_velocity_screen() {
     assert!(bench.sees("Edits: 1 not written"));
     bench.press("Velocity Settings");
     bench.pass_ms(500);
+    bench.open_tab("Velocity loop");
     assert!(bench.sees("1 setting changed and not applied yet."));
     bench.press("Apply to RAM");
     bench.pass_ms(1000);
@@ -78,6 +79,7 @@ fn p_edited_on_the_velocity_screen_is_the_same_edit_in_general_settings() {
     let mut bench = opened();
     bench.press("Velocity Settings");
     bench.pass_ms(500);
+    bench.open_tab("Velocity loop");
     bench.enter("M1 Velocity P", "2.500");
     show_in_general(&mut bench);
     assert!(bench.sees("Edits: 1 not written"));
@@ -88,6 +90,7 @@ fn p_edited_on_the_velocity_screen_is_the_same_edit_in_general_settings() {
     assert_eq!(held_p_raw(&bench), 0x2_8000);
     bench.press("Velocity Settings");
     bench.pass_ms(500);
+    bench.open_tab("Velocity loop");
     assert!(bench.sees("As the controller holds them."));
     assert!(unit(&mut bench).loop_edits(VELOCITY).is_empty());
 }
@@ -105,6 +108,7 @@ fn every_change_of_ram_or_of_an_edit_raises_the_revision() {
     rises(&mut bench, "an edit");
     bench.press("Velocity Settings");
     bench.pass_ms(500);
+    bench.open_tab("Velocity loop");
     bench.press("Apply to RAM");
     bench.pass_ms(1000);
     rises(&mut bench, "a write");
@@ -121,6 +125,7 @@ fn a_command_by_hand_that_changes_ram_is_seen_on_every_screen() {
     let mut bench = opened();
     bench.press("Velocity Settings");
     bench.pass_ms(500);
+    bench.open_tab("Velocity loop");
     bench.model().front.traffic.open = true;
     bench.pass_ms(200);
     bench.press("Send a command");
@@ -146,6 +151,7 @@ fn what_is_known_is_not_read_again_when_a_screen_opens() {
     bench.pass_ms(200);
     bench.press("Velocity Settings");
     bench.pass_ms(1000);
+    bench.open_tab("Velocity loop");
     bench.press("General Settings");
     bench.pass_ms(1000);
     assert!(!bench.model().front.traffic.log.to_text().contains("velocity PID"), "nothing was asked for");
@@ -176,11 +182,13 @@ fn what_was_edited_elsewhere_is_not_applied_at_once_by_opening_a_screen() {
     let mut bench = opened();
     bench.press("Velocity Settings");
     bench.pass_ms(500);
+    bench.open_tab("Velocity loop");
     bench.press("At once");
     bench.press("General Settings");
     unit(&mut bench).set(P, SettingValue::Number(2.0));
     bench.press("Velocity Settings");
     bench.pass_ms(1000);
+    bench.open_tab("Velocity loop");
     assert!(bench.sees("1 setting changed and not applied yet."));
     assert_eq!(held_p_raw(&bench), 0x1_0000);
 }

@@ -512,6 +512,7 @@ fn calibration_by_hand_makes_the_changes_of_the_manual_and_says_what_the_motor_d
     bench.connect();
     bench.press("Velocity Settings");
     bench.pass_ms(1000);
+    bench.open_tab("Velocity loop");
     bench.enter("M1 QPPS", "10600");
     bench.press("Apply to RAM");
     bench.pass_ms(3000);

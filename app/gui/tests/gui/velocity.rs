@@ -15,6 +15,7 @@ fn opened() -> Bench {
     bench.connect();
     bench.press("Velocity Settings");
     bench.pass_ms(1000);
+    bench.open_tab("Velocity loop");
     bench
 }
 
@@ -70,6 +71,7 @@ fn the_screen_is_read_when_the_controller_comes_after_it() {
     assert!(bench.sees("Start"));
     bench.connect();
     bench.pass_ms(1000);
+    bench.open_tab("Velocity loop");
     assert!(bench.sees("As the controller holds them."));
 }
 

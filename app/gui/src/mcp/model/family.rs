@@ -18,6 +18,7 @@ use brushwork_values::{Code, Motor};
 
 use super::diagnosis::ends;
 use super::{McpConnection, script};
+use crate::family::path::{BACK_UP, PathStep, Place, SAVE, ShownBy, Step};
 use crate::family::{Ability, ActiveIndicator, Family, Figure, Figures, Known, Own, Sliders};
 use crate::model::{HelpPage, IndicatorInfo, IndicatorState, Screen, Tab, state_of};
 use crate::tune::Loop;
@@ -45,11 +46,19 @@ impl Family for Mcp {
     #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn tabs(&self, screen: Screen) -> &'static [Tab] {
         match screen {
-            Screen::Pwm => &[Tab::Settings, Tab::Generator, Tab::Qpps],
+            Screen::Pwm => &[Tab::Settings, Tab::Direction, Tab::Generator, Tab::Qpps],
             Screen::Velocity => &[Tab::Settings, Tab::Generator, Tab::ByHand, Tab::Tune],
             Screen::Position => &[Tab::Settings, Tab::VelocityLoop, Tab::Generator, Tab::ByHand, Tab::Tune],
             _ => &[],
         }
+    }
+
+    fn path(&self) -> &'static [PathStep] {
+        PATH
+    }
+
+    fn direction_keys(&self) -> Option<[&'static str; 2]> {
+        Some(["motor{n}.encoder.reversed", "motor{n}.encoder.motor_reversed"])
     }
 
     fn figures(&self) -> &'static [Figures] {
@@ -238,6 +247,42 @@ impl Family for Mcp {
         None
     }
 }
+
+/// From what just came out of its box to an axis that holds a position.
+const PATH: &[PathStep] = &[
+    PathStep {
+        step: Step::Limits,
+        shown_by: ShownBy::Settings(&[
+            "motor{n}.current.max_amps",
+            "limits.main_battery.min_volts",
+            "limits.main_battery.max_volts",
+        ]),
+        place: Place::Settings(&["Current limits"]),
+    },
+    PathStep {
+        step: Step::Direction,
+        shown_by: ShownBy::Turning,
+        place: Place::Drawer(Screen::Pwm, Tab::Direction),
+    },
+    PathStep { step: Step::Encoder, shown_by: ShownBy::Counting, place: Place::Settings(&["Encoders"]) },
+    PathStep {
+        step: Step::Switches,
+        shown_by: ShownBy::Switches,
+        place: Place::Settings(&["Pins", "Control pins"]),
+    },
+    PathStep {
+        step: Step::Velocity,
+        shown_by: ShownBy::Settings(&["motor{n}.velocity.p", "motor{n}.velocity.i", "motor{n}.velocity.d"]),
+        place: Place::Drawer(Screen::Velocity, Tab::Tune),
+    },
+    PathStep {
+        step: Step::Position,
+        shown_by: ShownBy::Settings(&["motor{n}.position.p", "motor{n}.position.i", "motor{n}.position.d"]),
+        place: Place::Drawer(Screen::Position, Tab::Tune),
+    },
+    SAVE,
+    BACK_UP,
+];
 
 /// The model that is simulated unless another is chosen.
 const FIRST: &str = "mcp266";

@@ -7,7 +7,7 @@ use egui::{Button, Grid, Label, Layout, ProgressBar, RichText, Role, ScrollArea,
 use crate::command::{Command, Commands, GuidedAction};
 use crate::family::Family;
 use crate::model::{GeneralView, Gravity, IndicatorState, LinkView};
-use crate::screens::drive::arm_ui;
+use crate::screens::drive::{arm_ui, notices_ui};
 use crate::screens::general::sheet_parts::indicator_ui;
 use crate::widgets::numeric::Numeric;
 use brushwork_core::motion::clamp::Step;
@@ -33,6 +33,7 @@ pub fn clamp_ui(
             ui.add(Label::new(RichText::new(WHAT_IT_DOES).weak()).wrap());
             outputs_ui(ui, general);
             arm_ui(ui, ArmScope::ClampTest, link, family, commands);
+            notices_ui(ui, link);
             ui.add_space(2.0);
             ui.add_enabled_ui(!general.clamp.job.is_running(), |ui| task_ui(ui, general));
             run_ui(ui, general, link, commands);

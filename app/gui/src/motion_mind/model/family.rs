@@ -13,12 +13,31 @@ use brushwork_values::Motor;
 use super::connection::{cannot_tune, driven};
 use super::drive::to_send;
 use super::{MotionMindConnection, words};
+use crate::family::path::{BACK_UP, PathStep, Place, SAVE, ShownBy, Step};
 use crate::family::{Ability, ActiveIndicator, Family, Figure, Figures, Known, Own, SettingsWords, Sliders};
 use crate::model::{HelpPage, IndicatorInfo, IndicatorState, Screen, Simulated, Tab, state_of};
 use crate::tune::Loop;
 
 #[derive(Debug)]
 pub struct MotionMind;
+
+/// From a board on the bench to an axis that holds a position (mode 4).
+const PATH: &[PathStep] = &[
+    PathStep {
+        step: Step::Limits,
+        shown_by: ShownBy::Settings(&["register.ampslimit", "register.pwmlimit"]),
+        place: Place::Screen(Screen::GeneralSettings),
+    },
+    PathStep { step: Step::Direction, shown_by: ShownBy::Turning, place: Place::Screen(Screen::Velocity) },
+    PathStep { step: Step::Encoder, shown_by: ShownBy::Counting, place: Place::Screen(Screen::Position) },
+    PathStep {
+        step: Step::Position,
+        shown_by: ShownBy::Settings(&["register.pterm", "register.iterm", "register.dterm"]),
+        place: Place::Drawer(Screen::Position, Tab::Tune),
+    },
+    SAVE,
+    BACK_UP,
+];
 
 impl Family for MotionMind {
     fn family(&self) -> FamilyRef {
@@ -59,6 +78,10 @@ impl Family for MotionMind {
             Screen::Position => &[Tab::Steps, Tab::Tune],
             _ => &[],
         }
+    }
+
+    fn path(&self) -> &'static [PathStep] {
+        PATH
     }
 
     fn figures(&self) -> &'static [Figures] {

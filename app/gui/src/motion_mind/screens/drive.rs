@@ -6,11 +6,11 @@ use brushwork_values::Motor;
 use egui::{Button, Label, RichText, Ui};
 
 use crate::command::{Command, Commands};
-use crate::graph::panel;
 use crate::model::{Model, Screen};
 use crate::motion_mind::model::Driven;
 use crate::motion_mind::model::drive::{LOOPS_PER_S, VELOCITY_RANGE};
 use crate::screens::drive::{Output, drive_ui, motor_ui, on_release_ui, options_ui, pace_ui};
+use crate::screens::graph_place::graph_place_ui;
 use crate::screens::title_ui;
 use crate::widgets::{Numeric, Setpoint};
 
@@ -188,7 +188,7 @@ pub fn motion_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         }
     });
     ui.add_space(6.0);
-    panel::graph_ui(ui, &mut model.front.graph, model.front.poll, commands);
+    graph_place_ui(ui, model, commands);
 }
 
 /// What a mode does, and what to do to drive from here. Switches 2 to 4 are the mode's bits, "off" being 1.

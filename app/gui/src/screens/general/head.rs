@@ -4,6 +4,7 @@ use egui::{Button, Label, ProgressBar, RichText, Role, Ui, WidgetInfo, vec2};
 
 use crate::command::{Command, Commands};
 use crate::family::{Ability, Family, SettingsWords};
+use crate::focus;
 use crate::model::settings::{Running, Saved};
 use crate::model::{GeneralView, IndicatorState, SettingsAction, Sheet, UnitSettings};
 use crate::widgets::text_field::text_field_ui;
@@ -21,7 +22,7 @@ pub fn head_ui(ui: &mut Ui, general: &mut GeneralView<'_>, family: &dyn Family, 
 /// The title and the two marks: what differs from the controller, and whether it would survive a power cycle.
 fn marks_ui(ui: &mut Ui, words: &SettingsWords, unit: Option<&UnitSettings>) {
     ui.horizontal(|ui| {
-        ui.heading(words.title);
+        focus::heading_ui(ui, words.title);
         let Some(unit) = unit else { return };
         let (state, text) = edits_mark(unit);
         mark_ui(ui, state, "Edits", &text);

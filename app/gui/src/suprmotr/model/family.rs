@@ -8,11 +8,29 @@ use brushwork_suprmotr_wire::{Effect, Mnemonic, Radix};
 use brushwork_values::Motor;
 
 use super::{SuprMotrConnection, to_send};
+use crate::family::path::{BACK_UP, PathStep, Place, SAVE, ShownBy, Step};
 use crate::family::{Ability, ActiveIndicator, Family, Figure, Figures, Known, Own, SettingsWords, Sliders};
 use crate::model::{IndicatorInfo, IndicatorState, Screen, Simulated, state_of};
 
 #[derive(Debug)]
 pub struct SuprMotr;
+
+/// From a board on the bench to an axis that goes to places.
+const PATH: &[PathStep] = &[
+    PathStep { step: Step::Encoder, shown_by: ShownBy::Counting, place: Place::Screen(Screen::Position) },
+    PathStep {
+        step: Step::Switches,
+        shown_by: ShownBy::IfWanted(&["limits.enabled"]),
+        place: Place::Screen(Screen::GeneralSettings),
+    },
+    PathStep {
+        step: Step::Position,
+        shown_by: ShownBy::Settings(&["loop.p", "loop.i", "loop.d"]),
+        place: Place::Screen(Screen::GeneralSettings),
+    },
+    SAVE,
+    BACK_UP,
+];
 
 impl Family for SuprMotr {
     fn family(&self) -> FamilyRef {
@@ -113,6 +131,10 @@ impl Family for SuprMotr {
 
     fn to_send(&self, scope: ArmScope, sliders: Sliders) -> Option<Drive> {
         (scope == ArmScope::Position).then(|| to_send(sliders.position.setpoints)).flatten()
+    }
+
+    fn path(&self) -> &'static [PathStep] {
+        PATH
     }
 
     fn channels(&self) -> &'static [Channel] {

@@ -171,7 +171,11 @@ fn opened(place: &str) -> Bench {
             "Velocity loop" => bench.press("Velocity loop"),
             "tuned" => tune_position(&mut bench),
             "Tune" => bench.press("Tune"),
-            _ => {}
+            _ => {
+                let screen = bench.model().screen;
+                let tabs = bench.model().front.family().tabs(screen);
+                tabs.first().map(|tab| tab.title(screen)).into_iter().for_each(|title| bench.open_tab(title));
+            }
         }
         return bench;
     }

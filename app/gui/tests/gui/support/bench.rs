@@ -357,7 +357,8 @@ impl Bench {
     /// What can be pressed under that label; a heading may read the same.
     pub fn button<'a>(&'a self, label: &'a str) -> Node<'a> {
         let labelled = self.harness.get_all_by_label(label);
-        let mut pressable = labelled.filter(|node| node.accesskit_node().role() != Role::Label);
+        let is_text = |role| matches!(role, Role::Label | Role::Heading);
+        let mut pressable = labelled.filter(|node| !is_text(node.accesskit_node().role()));
         let found = pressable.next().unwrap_or_else(|| panic!("nothing to press reads {label:?}"));
         assert!(pressable.next().is_none(), "several things to press read {label:?}");
         found
@@ -373,6 +374,18 @@ impl Bench {
 
     pub fn sees_part(&self, part: &str) -> bool {
         self.harness.query_all_by_label_contains(part).next().is_some()
+    }
+
+    /// Opens a tab of the drawer, unless it is open.
+    pub fn open_tab(&mut self, title: &str) {
+        let screen = self.model().screen;
+        if self.model().front.open_tab(screen).is_some_and(|tab| tab.title(screen) == title) {
+            return;
+        }
+        // A star tells of edits behind it.
+        let starred = format!("{title} *");
+        let label = if self.sees(&starred) { starred.as_str() } else { title };
+        self.press(label);
     }
 
     /// Connects to the simulated controller and waits until it has answered.

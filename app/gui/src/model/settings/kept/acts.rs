@@ -6,6 +6,7 @@ use brushwork_link::settings::{Act, Aftermath, Journal};
 use brushwork_link::{Identity, Keeper, Message, PortInfo, Profile};
 
 use super::Came;
+use crate::messages::PathMessage;
 use crate::model::settings::unit_key::UnitKey;
 use crate::model::settings::units::Settings;
 use brushwork_core::keep::{Backup, Keeping, UnitId, Wear, aftermaths};
@@ -46,6 +47,20 @@ impl Settings {
     /// What stands on the disk by now: backups, and how often the EEPROM was written.
     pub fn refresh_kept(&mut self) {
         self.kept.look_at_files();
+    }
+
+    /// Keeps a copy of the settings of the unit that is looked at, because somebody asked for it.
+    ///
+    /// # Errors
+    /// They were not read, or the disk does not take them.
+    pub fn back_up(&mut self) -> Result<Message, Message> {
+        let read = self.unit().and_then(|unit| unit.profile(false));
+        let (Some(profile), Some(keeping), Some(unit)) = (read, &self.kept.keeping, &self.kept.unit) else {
+            return Err(PathMessage::BackupNotRead.into());
+        };
+        keeping.store().back_up_now(unit, &profile).map_err(Message::error)?;
+        self.kept.look_at_files();
+        Ok(PathMessage::BackupMade.into())
     }
 
     /// What could not be kept or read since the last look, in sentences.
@@ -120,6 +135,9 @@ impl Settings {
 
     /// Takes in what work came to: what was cut short may be settled by it, or has to be told now, which is true then.
     pub(in crate::model::settings) fn note_came(&mut self, came: Option<Came>) -> bool {
+        if matches!(came, Some(Came::Saved { .. } | Came::Written)) {
+            self.kept.look_at_files();
+        }
         match came {
             Some(Came::Read) => return self.has_unfinished() && !self.aftermaths().is_empty(),
             Some(Came::Reloaded(image)) => {
