@@ -63,16 +63,9 @@ fn progress_text(steps: &[Judged]) -> String {
 /// A step by its mark and its title; true where it was pressed.
 fn chip_ui(ui: &mut Ui, judged: &Judged, is_shown: bool) -> bool {
     let (title, word) = (judged.step.step.title(), judged.standing.word());
-    let response = ui
-        .scope(|ui| {
-            // The mark is drawn into the room before the words.
-            let button = Button::selectable(is_shown, format!("     {title}"));
-            let response = ui.add(button);
-            let place = response.rect.left_center() + vec2(13.0, 0.0);
-            judged.standing.mark().paint(ui, place, MARK * 0.36);
-            response
-        })
-        .inner;
+    // The mark is drawn into the room before the words.
+    let response = ui.add(Button::selectable(is_shown, format!("     {title}")));
+    judged.standing.mark().paint(ui, response.rect.left_center() + vec2(13.0, 0.0), MARK * 0.36);
     response
         .widget_info(|| WidgetInfo::selected(Role::Button, true, is_shown, format!("Step {title}: {word}")));
     response.on_hover_text(format!("{title}: {word}. {}", judged.note)).clicked()
