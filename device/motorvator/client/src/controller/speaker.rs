@@ -128,8 +128,11 @@ fn judge(heard: &[u8]) -> Found {
         return Found::Library(version);
     }
     let words = String::from_utf8_lossy(heard).to_lowercase();
+    // What has not ended may be a frame that was cut short.
+    let mut lines =
+        heard.split_inclusive(|byte| *byte == LINE_END).filter_map(|line| line.strip_suffix(&[LINE_END]));
     let is_frame = |line: &[u8]| brushwork_motorvator_wire::parse_line_of_board(line).is_some();
-    if NAMES.iter().any(|name| words.contains(name)) || heard.split(|byte| *byte == LINE_END).any(is_frame) {
+    if NAMES.iter().any(|name| words.contains(name)) || lines.any(is_frame) {
         Found::CommandLine
     } else if heard.is_empty() {
         Found::Nothing
