@@ -124,6 +124,7 @@ messages! {
         AsPredicted { motor: Motor } "{motor} behaves as predicted with these gains.",
         LinkEnded "The link ended without a reason. Connect again.",
         ArmEditorFirst "A script can move motors: arm the MCL Editor first, then press Run again.",
+        RunsOnBoardsAlone "A MeccCode program goes to no controller from here. Run it on a simulated board: brushwork mecc run FILE, or brushwork sim with --program FILE.",
         CodeIsNotPublic "Could not download the program: the byte code of real controllers is not public, so nobody but their maker can compile for them. Choose an image file that the maker's program has compiled: it is sent as it is, and can be started, stopped and set to autorun from here.",
         RunHoldsSettings "A tuning run is at work, and this command changes settings. Send it when the run has ended.",
         GainsBack { motor: Motor } "The gains of {motor} from before the run are back.",

@@ -9,6 +9,7 @@ pub mod debug;
 pub mod diagnostic;
 pub mod disassembly;
 pub mod image;
+pub mod language;
 mod lexing;
 mod listed;
 pub mod mcl;

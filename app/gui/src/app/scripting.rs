@@ -7,6 +7,7 @@ use std::path::Path;
 
 use brushwork_link::{ArmScope, Failure, Request};
 use brushwork_script::image;
+use brushwork_script::language::Language;
 use brushwork_script::mcl::compile;
 use egui::{Context, ViewportCommand};
 
@@ -69,6 +70,9 @@ impl App {
     /// Compiles the program in front and sends it to the controller.
     pub(super) fn download_mcl(&mut self) {
         self.show(Screen::MclEditor);
+        if self.model.mcl.front().language() == Language::Mecc {
+            return self.model.messages.fail(WindowStatusMessage::RunsOnBoardsAlone);
+        }
         let simulated = self.model.front.link.identity().is_some_and(|identity| identity.simulated);
         if !simulated {
             self.model.messages.fail(WindowStatusMessage::CodeIsNotPublic);

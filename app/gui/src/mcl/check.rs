@@ -4,6 +4,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use brushwork_script::language::Language;
 use brushwork_script::mcl::index::Index;
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 use ropey::Rope;
@@ -30,6 +31,7 @@ struct Job {
     id: DocId,
     revision: u64,
     text: Rope,
+    language: Language,
 }
 
 /// The thread that checks. Only the newest text counts.
@@ -60,8 +62,9 @@ impl Checker {
     }
 
     /// Has a text checked in place of what still waits.
-    pub fn ask(&self, id: DocId, revision: u64, text: Rope) {
-        *self.next.lock().unwrap_or_else(PoisonError::into_inner) = Some(Job { id, revision, text });
+    pub fn ask(&self, id: DocId, revision: u64, text: Rope, language: Language) {
+        *self.next.lock().unwrap_or_else(PoisonError::into_inner) =
+            Some(Job { id, revision, text, language });
         // A thread that is awake already looks for the newest text by itself.
         let _ = self.wake.try_send(());
     }
@@ -85,7 +88,7 @@ fn work(slot: &Mutex<Option<Job>>, woken: &Receiver<()>, sender: &Sender<Checked
         }
         let job = slot.lock().unwrap_or_else(PoisonError::into_inner).take();
         let Some(job) = job else { continue };
-        let checked = check(job.id, job.revision, job.text.to_string());
+        let checked = check(job.id, job.revision, job.text.to_string(), job.language);
         if sender.send(checked).is_err() {
             return;
         }
@@ -94,8 +97,8 @@ fn work(slot: &Mutex<Option<Job>>, woken: &Receiver<()>, sender: &Sender<Checked
 }
 
 /// Checks at once.
-pub fn check(id: DocId, revision: u64, text: String) -> Checked {
-    let index = Index::of(&text);
+pub fn check(id: DocId, revision: u64, text: String, language: Language) -> Checked {
+    let index = language.index(&text);
     Checked { id, revision, text, index }
 }
 
@@ -111,7 +114,7 @@ mod tests {
         });
         let sum = format!("x var long\nx = x{}\n", "+x".repeat(40_000));
         for (revision, text) in (1..).zip([sum, "(".repeat(100_000), "\0".repeat(50_000)]) {
-            checker.ask(DocId(1), revision, Rope::from_str(&text));
+            checker.ask(DocId(1), revision, Rope::from_str(&text), Language::Mcl);
             news.recv_timeout(crate::wait::PATIENCE).unwrap();
             let checked = checker.answer().unwrap();
             assert_eq!(checked.revision, revision);
@@ -126,7 +129,7 @@ mod tests {
             let _ = reported.try_send(());
         });
         for revision in 1..=5 {
-            checker.ask(DocId(1), revision, Rope::from_str("goto nowhere\n"));
+            checker.ask(DocId(1), revision, Rope::from_str("goto nowhere\n"), Language::Mcl);
         }
         news.recv_timeout(crate::wait::PATIENCE).unwrap();
         let checked = checker.answer().unwrap();

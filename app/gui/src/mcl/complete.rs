@@ -29,8 +29,8 @@ impl Completion {
         let shown = document.text.line(line);
         let at = document.caret.head - start;
         let Completions { replaces, mut entries } = match &document.findings.checked {
-            Some(checked) => checked.index.completions(&shown, at),
-            None => Index::of("").completions(&shown, at),
+            Some(checked) => document.language().completions(&checked.index, &shown, at),
+            None => document.language().completions(&Index::of(""), &shown, at),
         };
         let from = replaces.start as usize;
         let typed = shown.get(from..at)?;

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use brushwork_script::diagnostic::Severity;
+use brushwork_script::language::Language;
 use egui::Vec2;
 
 use super::composing::Composing;
@@ -119,6 +120,11 @@ impl Document {
     pub fn title(&self) -> String {
         let name = self.path.as_ref().and_then(|path| path.file_name());
         name.map_or_else(|| self.untitled.clone(), |name| name.to_string_lossy().into_owned())
+    }
+
+    /// The language that it is in, by the end of its name.
+    pub fn language(&self) -> Language {
+        Language::of_file(&self.title())
     }
 
     /// The line of the caret, from 0.

@@ -4,7 +4,7 @@ use brushwork_link::Message;
 use std::ops::Range;
 use std::sync::Arc;
 
-use brushwork_script::mcl::index::{self, Help, SyntaxHint, syntax_at};
+use brushwork_script::mcl::index::{self, Help, SyntaxHint};
 use brushwork_script::text::Span;
 
 use super::check::{Checked, check};
@@ -30,7 +30,7 @@ impl Document {
         if let Some(checked) = self.findings.fresh(revision) {
             return checked.clone();
         }
-        let checked = Arc::new(check(self.id(), revision, self.text.text()));
+        let checked = Arc::new(check(self.id(), revision, self.text.text(), self.language()));
         self.take_checked(checked.clone());
         checked
     }
@@ -62,7 +62,7 @@ impl Document {
         let line = self.text.line_of(at);
         let start = self.text.line_start(line);
         let shown = self.text.line(line);
-        let pieces = index::classes(&shown);
+        let pieces = self.language().classes(&shown);
         let (range, class) = pieces.into_iter().find(|(range, _)| range.contains(&(at - start)))?;
         if matches!(class, index::Class::Comment | index::Class::Text | index::Class::Number) {
             return None;
@@ -73,13 +73,13 @@ impl Document {
             let symbol = checked.index.symbol(word)?;
             Some(checked.index.describe(&checked.text, symbol))
         };
-        index::help(word).or_else(own)
+        self.language().help(word).or_else(own)
     }
 
     /// The syntax of the command in which the caret stands, and which argument it is (MCP manual 3.4.1).
     pub fn syntax(&self) -> Option<SyntaxHint> {
         let line = self.caret_line();
-        syntax_at(&self.text.line(line), self.caret.head - self.text.line_start(line))
+        self.language().syntax_at(&self.text.line(line), self.caret.head - self.text.line_start(line))
     }
 
     /// Goes to where the name at the caret is defined.
@@ -98,7 +98,7 @@ impl Document {
                 Ok(())
             }
             None if word.is_empty() => Err(EditorMessage::NoName),
-            None => Err(match index::help(&word) {
+            None => Err(match self.language().help(&word) {
                 Some(_) => EditorMessage::OfTheLanguage { word },
                 None => EditorMessage::NotDefined { word },
             }),
@@ -114,7 +114,7 @@ impl Document {
         let at = u32::try_from(self.caret.head).unwrap_or(u32::MAX);
         let not_renamed =
             |error: index::RenameError| EditorMessage::NotRenamed { why: Message::error(error) };
-        let places = checked.index.rename(at, new).map_err(not_renamed)?;
+        let places = self.language().rename(&checked.index, at, new).map_err(not_renamed)?;
         let line = self.caret_line();
         let edits = places.iter().rev().map(|span| (bytes(*span), new.to_owned()));
         let edits: Vec<_> = edits.collect();

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use brushwork_script::mcl::index::{Class, classes};
+use brushwork_script::language::Language;
+use brushwork_script::mcl::index::Class;
 use egui::text::{CCursor, LayoutJob, TextFormat};
 use egui::{FontId, Galley, Ui, Vec2};
 
@@ -39,7 +40,7 @@ pub struct Line {
 }
 
 impl Line {
-    pub fn of(ui: &Ui, text: &str, metrics: &Metrics, is_left_out: bool) -> Self {
+    pub fn of(ui: &Ui, text: &str, metrics: &Metrics, is_left_out: bool, language: Language) -> Self {
         let palette = Palette::of(ui);
         let (mut shown, mut bytes) = (String::new(), Vec::new());
         let mut starts = Vec::new();
@@ -69,7 +70,7 @@ impl Line {
                 drawn = to;
             }
         };
-        for (range, class) in classes(&text[..end]) {
+        for (range, class) in language.classes(&text[..end]) {
             append(&mut job, shown_at(range.start), palette.text);
             let color =
                 if is_left_out { palette.weak_text } else { color_of(&palette.syntax, class, palette) };

@@ -1,6 +1,7 @@
 //! A program on paper: pages of PDF with line numbers, the colours of the words, and a head with name and page.
 
-use brushwork_script::mcl::index::{Class, classes};
+use brushwork_script::language::Language;
+use brushwork_script::mcl::index::Class;
 use egui::Color32;
 use pdf_writer::{Content, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
 
@@ -36,11 +37,15 @@ struct Row {
 pub fn pdf(title: &str, text: &str) -> Result<Vec<u8>, String> {
     let face = FontFace::of_the_window().ok_or("the window's fixed font is missing")?;
     let mut typeface = face.typeface()?;
+    let language = Language::of_file(title);
     let digits = text.lines().count().max(1).to_string().len();
     let left = MARGIN + (digits + 2) as f32 * SIZE * ADVANCE;
     let cells = ((PAGE.0 - MARGIN - left) / (SIZE * ADVANCE)) as usize;
-    let rows: Vec<Row> =
-        text.split('\n').enumerate().flat_map(|(index, line)| rows_of(index + 1, line, cells)).collect();
+    let rows: Vec<Row> = text
+        .split('\n')
+        .enumerate()
+        .flat_map(|(index, line)| rows_of(index + 1, line, cells, language))
+        .collect();
     let per_page = ((PAGE.1 - 2.0 * MARGIN - 2.0 * ROW) / ROW) as usize;
     let pages = rows.len().div_ceil(per_page);
     let date = today();
@@ -71,10 +76,10 @@ pub fn pdf(title: &str, text: &str) -> Result<Vec<u8>, String> {
 }
 
 /// A line as rows that fit the page.
-fn rows_of(number: usize, line: &str, cells: usize) -> Vec<Row> {
+fn rows_of(number: usize, line: &str, cells: usize, language: Language) -> Vec<Row> {
     let line = line.trim_end_matches('\r');
     let palette = Palette::of_theme(egui::Theme::Light);
-    let pieces = classes(line);
+    let pieces = language.classes(line);
     let class_at =
         |byte: usize| pieces.iter().find(|(range, _)| range.contains(&byte)).map(|(_, class)| *class);
     let mut rows = vec![Row { number: Some(number), pieces: Vec::new() }];
@@ -153,7 +158,7 @@ mod tests {
 
     #[test]
     fn a_line_that_is_too_long_goes_on_in_the_next_row_without_a_number() {
-        let rows = rows_of(7, &"a".repeat(25), 10);
+        let rows = rows_of(7, &"a".repeat(25), 10, Language::Mcl);
         let numbers: Vec<Option<usize>> = rows.iter().map(|row| row.number).collect();
         assert_eq!(numbers, [Some(7), None, None]);
         assert_eq!(rows[2].pieces[0].1, "aaaaa");
@@ -161,7 +166,7 @@ mod tests {
 
     #[test]
     fn words_keep_their_colours_on_paper() {
-        let rows = rows_of(1, "goto main ; away", 80);
+        let rows = rows_of(1, "goto main ; away", 80, Language::Mcl);
         let colors: Vec<Color32> = rows[0].pieces.iter().map(|(_, _, color)| *color).collect();
         let syntax = Palette::of_theme(egui::Theme::Light).syntax;
         assert!(colors.contains(&syntax.command) && colors.contains(&syntax.comment), "{colors:?}");

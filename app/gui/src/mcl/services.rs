@@ -78,7 +78,7 @@ impl Editor {
         let known = front.findings.fresh(newest.1).is_some();
         if shown && !known && services.asked != Some(newest) {
             services.asked = Some(newest);
-            services.checker.ask(newest.0, newest.1, front.text.snapshot());
+            services.checker.ask(newest.0, newest.1, front.text.snapshot(), front.language());
         }
     }
 

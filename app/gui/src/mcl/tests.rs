@@ -278,3 +278,18 @@ fn a_fold_hides_lines_and_the_caret_does_not_stay_in_it() {
     program.go_to_line(1);
     assert!(!program.folds.is_closed(0), "a jump into it opens it");
 }
+
+#[test]
+fn a_program_is_read_in_the_language_that_its_name_ends_with() {
+    let text = "begin program\nbeep 1,2\nend program\n";
+    let mut document = Document::new(DocId(1), "crane.mecc".to_owned(), text);
+    document.known();
+    assert_eq!(document.findings.counts(), (0, 0), "{:?}", document.findings.problems);
+    assert!(document.hover(15).and_then(|hover| hover.help).is_some_and(|help| help.title == "Beep"));
+    document.tidy();
+    assert!(document.text.text().contains("\n    beep 1, 2\n"), "{}", document.text.text());
+    document.untitled = "crane".to_owned();
+    document.replace_all(text);
+    document.known();
+    assert!(document.findings.counts().0 > 0, "it is no MCL");
+}

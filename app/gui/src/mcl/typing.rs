@@ -218,7 +218,7 @@ impl Document {
     /// Writes the program anew in the usual form; the caret stays in its line.
     pub fn tidy(&mut self) {
         let text = self.text.text();
-        let tidied = brushwork_script::mcl::format::format(&text);
+        let tidied = self.language().format(&text);
         if tidied != text {
             self.replace_all(&tidied);
         }

@@ -131,7 +131,8 @@ fn reveal(ui: &Ui, document: &mut Document, metrics: &Metrics) -> Option<Vec2> {
     let line = document.caret_line();
     let top = document.folds.row_of(line) as f32 * metrics.row;
     let start = document.text.line_start(line);
-    let x = Line::of(ui, &document.text.line(line), metrics, false).x_of(document.caret.head - start);
+    let x = Line::of(ui, &document.text.line(line), metrics, false, document.language())
+        .x_of(document.caret.head - start);
     let room = metrics.row * 1.5;
     let (low, high) = (top + metrics.row + room - view.size.y, top - room);
     let nearest = view.offset.y.max(low).min(high.max(0.0)).max(0.0);
@@ -165,7 +166,7 @@ impl Page<'_> {
         let text = &self.document.text;
         let start = text.line_start(line);
         let is_left_out = self.document.findings.left_out.iter().any(|range| range.contains(&start));
-        Line::of(ui, &text.line(line), self.metrics, is_left_out)
+        Line::of(ui, &text.line(line), self.metrics, is_left_out, self.document.language())
     }
 
     /// The byte of the text nearest to a point.

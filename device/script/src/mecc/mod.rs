@@ -9,6 +9,7 @@ mod board;
 pub mod codes;
 pub mod events;
 pub mod format;
+pub mod index;
 pub mod lexer;
 mod lower;
 mod parser;

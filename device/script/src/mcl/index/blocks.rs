@@ -21,6 +21,12 @@ pub enum BlockKind {
     Repeat,
     /// #IF and its kin, to #ENDIF.
     Directive,
+    /// A program, a routine or a table, of a language that closes them.
+    Routine,
+    /// Loop, End Loop.
+    Loop,
+    /// Select, Case, End Select.
+    Select,
 }
 
 /// Words that belong together.
@@ -68,7 +74,7 @@ struct Finder {
     /// Which of those are IFs.
     ifs: Vec<usize>,
     /// How many there are of each kind.
-    counts: [usize; 6],
+    counts: [usize; 9],
     directives: Vec<Block>,
     done: Vec<Block>,
 }

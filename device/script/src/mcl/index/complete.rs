@@ -175,7 +175,7 @@ fn symbol_entry(symbol: &Symbol) -> Entry {
         SymbolKind::Alias => EntryKind::Alias,
         SymbolKind::Constant => EntryKind::Constant,
         SymbolKind::Table => EntryKind::Table,
-        SymbolKind::Label => EntryKind::Label,
+        SymbolKind::Label | SymbolKind::Function | SymbolKind::Handler => EntryKind::Label,
     };
     let length = symbol.length.map(|length| format!("({length})")).unwrap_or_default();
     let detail = symbol.value.map(|kind| format!("{}{length}", kind.name())).unwrap_or_default();

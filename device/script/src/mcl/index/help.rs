@@ -136,6 +136,8 @@ impl Index {
             SymbolKind::Constant => "Constant",
             SymbolKind::Table => "Table of constants",
             SymbolKind::Label => "Label",
+            SymbolKind::Function => "Function",
+            SymbolKind::Handler => "Event handler",
         };
         let length = symbol.length.map(|length| format!("({length})")).unwrap_or_default();
         let mut facts = Vec::new();

@@ -34,13 +34,26 @@ impl Index {
     /// # Errors
     /// There is no name here, or the program would mean something else or nothing with the new one.
     pub fn rename(&self, at: u32, new: &str) -> Result<Vec<Span>, RenameError> {
+        self.rename_unless(at, new, words::is_reserved)
+    }
+
+    /// The same in a language whose own words are `is_reserved`.
+    ///
+    /// # Errors
+    /// As [`Index::rename`].
+    pub fn rename_unless(
+        &self,
+        at: u32,
+        new: &str,
+        is_reserved: impl Fn(&str) -> bool,
+    ) -> Result<Vec<Span>, RenameError> {
         let symbol = self.symbol_at(at).ok_or(RenameError::NoName)?;
         let begins = new.starts_with(|letter: char| letter.is_ascii_alphabetic() || letter == '_');
         let is_name = new.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
         if !begins || !is_name || new.len() > LONGEST_NAME {
             return Err(RenameError::NotAName(new.to_owned()));
         }
-        if words::is_reserved(new) {
+        if is_reserved(new) {
             return Err(RenameError::Reserved(new.to_owned()));
         }
         if let Some(other) = self.symbol(new).filter(|other| other.key != symbol.key) {

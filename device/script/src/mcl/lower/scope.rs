@@ -28,6 +28,10 @@ pub enum SymbolKind {
     Table,
     /// A label.
     Label,
+    /// A function, of a language that has some.
+    Function,
+    /// What an event runs, of a language that has some.
+    Handler,
 }
 
 /// A name with its places.
@@ -129,6 +133,8 @@ impl Scope {
                 SymbolKind::Constant => "constant",
                 SymbolKind::Table => "table",
                 SymbolKind::Label => "label",
+                SymbolKind::Function => "function",
+                SymbolKind::Handler => "event handler",
             };
             let hint = Some(format!("There is a {kind} of this name above."));
             diagnostics.push(Diagnostic { code: codes::DEFINED_TWICE, span: name.span, message, hint });

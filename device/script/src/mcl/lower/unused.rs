@@ -25,7 +25,9 @@ impl Lowering<'_> {
                 | SymbolKind::Alias
                 | SymbolKind::Constant
                 | SymbolKind::Table
-                | SymbolKind::Label => continue,
+                | SymbolKind::Label
+                | SymbolKind::Function
+                | SymbolKind::Handler => continue,
             };
             found.push((code, entry.symbol.defined, message));
         }
