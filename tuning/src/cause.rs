@@ -62,6 +62,9 @@ causes! {
     ControllerFault "The controller reports a fault. Read its status, clear it, and try again.";
     /// The current went beyond the highest that the run was allowed.
     OverCurrent "The current went beyond the highest that was allowed. Allow more, or lower the highest duty.";
+    /// The counts began at 0 again.
+    WasReset "The controller was reset in mid-run: its counts began at 0 again, and its gains and time-out are those of its EEPROM. Look at the \
+        supply and its plugs, then try again.";
     /// No replies.
     LinkLost "The controller stopped answering. Check the cable; the controller stops the motor by itself, by its time-out or at the \
         limits of the run.";

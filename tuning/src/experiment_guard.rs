@@ -94,6 +94,12 @@ impl Default for GuardOptions {
     }
 }
 
+/// Counts that began anew are told from a motor that moved by a jump of more than this many times what full speed makes in the time since the
+/// last poll: twice, since that time is known to a poll at each end and full speed to a few percent.
+const RESET_REACH: f64 = 2.0;
+/// Where hardly any time went by, so many counts are no jump: a step of the duty and the rounding of the time make a few.
+const RESET_COUNTS: f64 = 60.0;
+
 /// The guard around an experiment on an axis.
 pub struct ExperimentGuard<'a, L: Law> {
     axis: &'a mut dyn LoopAxis<L>,
@@ -436,7 +442,11 @@ impl<'a, L: Law> ExperimentGuard<'a, L> {
             Err(error) => return Err(cause_of(&error)),
         };
         (self.silent_since_s, self.silent_polls) = (None, 0);
+        let before = self.points.last().map(|point| (point.t, point.counts));
         let point = self.point_of(&sample);
+        if before.is_some_and(|before| self.counts_anew(before, &point)) {
+            return Err(Cause::WasReset);
+        }
         let unreported = [
             want.duty && sample.duty_raw.is_none(),
             want.current && sample.current_raw.is_none(),
@@ -608,6 +618,17 @@ impl<'a, L: Law> ExperimentGuard<'a, L> {
             }
         }
         diagnose(&self.monitor, alarm_s, &after)
+    }
+
+    /// Whether the counts are near 0 where no motor could have gone to since the poll before: the controller was reset, and its gains and its
+    /// time-out are those of its EEPROM.
+    fn counts_anew(&self, (before_s, counts): (f64, f64), point: &Point) -> bool {
+        let full_speed = self.monitor.full_speed;
+        let reach = RESET_REACH * full_speed * (point.t - before_s) + RESET_COUNTS;
+        self.setup.encoder == EncoderClass::Quadrature
+            && full_speed > 0.0
+            && (point.counts - counts).abs() > reach
+            && (self.last_raw as f64).abs() < reach.min(0.5 * (point.counts - counts).abs())
     }
 
     fn point_of(&mut self, sample: &Sample) -> Point {

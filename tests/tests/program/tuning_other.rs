@@ -94,6 +94,7 @@ struct Link {
 
 impl Link {
     fn new(manner: Manner, motor: Motor) -> Self {
+        brushwork::install();
         let cable = Cable {
             unit: Arc::new(Mutex::new(OtherController::new(manner, motor))),
             clock: VirtualClock::new(),

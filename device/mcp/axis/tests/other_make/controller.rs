@@ -105,6 +105,9 @@ pub struct Controller {
     latency_s: f64,
     loss: f64,
     draw: Draw,
+    /// When it is reset, if ever.
+    pub reset_at: Option<Duration>,
+    zero: f64,
 }
 
 impl Controller {
@@ -133,16 +136,29 @@ impl Controller {
             latency_s: draw.log(0.0005, 0.003),
             loss: draw.between(0.0, 0.01),
             draw,
+            reset_at: None,
+            zero: 0.0,
         }
     }
 
     fn advance(&mut self, to: Duration) {
         while (self.ticks + 1) as f64 * self.law.tick_s() <= to.as_secs_f64() {
             self.ticks += 1;
+            if self.reset_at.is_some_and(|at| self.ticks as f64 * self.law.tick_s() > at.as_secs_f64()) {
+                self.reset();
+            }
             self.machine.advance(self.duty, self.law.tick_s());
             self.tick();
         }
         self.now = self.now.max(to);
+    }
+
+    /// As after a short loss of its supply.
+    fn reset(&mut self) {
+        self.reset_at = None;
+        self.velocity = VelocityRegisters { p: 0x1_0000, i: 0x8000, d: 0x4000, qpps: 44_000 };
+        self.task = Task::Duty(0.0);
+        self.zero = self.machine.count();
     }
 
     fn tick(&mut self) {
@@ -210,7 +226,7 @@ impl Axis for Controller {
     }
 
     fn sample(&mut self, want: Want) -> Result<Sample, AxisError> {
-        let (counts_at, count) = self.ask(|unit| unit.count)?;
+        let (counts_at, count) = self.ask(|unit| unit.count - unit.zero)?;
         let duty = |unit: &mut Self| (32_767.0 * unit.duty).round() as i16;
         let duty_raw = if want.duty { Some(self.ask(duty)?) } else { None };
         let amps = |unit: &mut Self| {

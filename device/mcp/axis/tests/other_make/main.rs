@@ -11,6 +11,7 @@ use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::tune::{Request, tune};
 use controller::{Controller, LawOptions, sensitivity};
 use machine::{Draw, Motor};
+use std::time::Duration;
 
 /// A motor and a law of a seed, and how often it is polled.
 fn drawn(seed: u64, number: usize) -> (Motor, LawOptions, f64, Draw) {
@@ -109,4 +110,30 @@ fn what_is_tuned_without_a_warning_has_the_margin_that_it_should() {
     }
     println!("{tuned} tuned without a warning, {above} above 1.8 with one");
     assert!(tuned >= 8, "a warning on every run says nothing: {tuned} without one");
+}
+
+/// Wherever the run is, but for the probe at its beginning. Seed 79.
+#[test]
+fn a_reset_in_mid_run_is_named_and_nothing_is_called_tuned() {
+    let (mut named, mut runs) = (0, 0);
+    for number in 0..12 {
+        for at_s in [2.7, 3.9, 5.3] {
+            let (motor, law, poll_s, draw) = drawn(79, number);
+            let mut unit = Controller::new(motor, law, draw);
+            unit.reset_at = Some(Duration::from_secs_f64(at_s));
+            let guard = GuardOptions { poll_s, ..GuardOptions::default() };
+            let report = tune(&mut unit, &Request::<McpLaw> { guard, ..Request::default() });
+            if report.seconds.1 < at_s - 0.7 {
+                continue;
+            }
+            let case =
+                format!("{number} {} at {at_s} s: {:?} {:?}", motor.kind, report.verdict, report.causes);
+            println!("{case}");
+            runs += 1;
+            named += usize::from(report.causes.first() == Some(&Cause::WasReset));
+            assert_eq!(report.verdict, Verdict::Refused, "{case}");
+        }
+    }
+    println!("{named} of {runs} named");
+    assert!(10 * named >= 9 * runs, "{named} of {runs} named");
 }
