@@ -72,7 +72,9 @@ fn lines(figures: Option<&LinkStatistics>) -> (String, String) {
     let first = format!("{:7.1} kbit/s {:6.0} req/s", figures.kbit_per_s, figures.transactions_per_s);
     let errors = figures.timeouts + figures.crc_errors;
     let round_trip = milliseconds(figures.round_trip_median_s);
-    let second = format!("{round_trip} ms {errors:6} errors");
+    // As wide as the plural, so that the figure stands still.
+    let noun = if errors == 1 { "error " } else { "errors" };
+    let second = format!("{round_trip} ms {errors:6} {noun}");
     (first, second)
 }
 
