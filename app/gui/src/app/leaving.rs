@@ -1,10 +1,10 @@
-//! What must wait until a tuning run has put back what it changed: closing the window, closing the link, turning to another unit.
+//! What must wait until a tuning run or an examination has put back what it changed: closing the window, closing the link, turning to another unit.
 //!
 //! The motors do not wait: they are stopped at once. Asked for a second time it happens at once too.
 
 use super::App;
 use crate::messages::WindowStatusMessage;
-use crate::model::ConnectionId;
+use crate::model::{ConnectionId, Gravity};
 use crate::tune::model::Afterwards;
 use brushwork_core::messages::EndedMessage;
 use brushwork_link::device::Request;
@@ -38,6 +38,7 @@ impl App {
                 self.links.stop_all();
                 for connection in self.model.connections_mut() {
                     connection.tune.abort(EndedMessage::WindowCloses);
+                    connection.examination.cancel(Gravity::Warning, EndedMessage::WindowCloses);
                     connection.tune.want_winding_back();
                     connection.rest();
                 }
@@ -64,16 +65,14 @@ impl App {
         self.model.connections().any(|connection| {
             let owes_winding =
                 connection.tune.cleared_winding().is_some() || is_leaving && connection.settings.is_busy();
-            connection.tune.is_running() || connection.is_connected() && owes_winding
+            connection.may_owe() || connection.is_connected() && owes_winding
         })
     }
 
     /// Whether an act that would cut a run off from its controller is put off until the run has put back what it changed. The run is
     /// ended.
     pub(super) fn waits_for_run(&mut self, id: ConnectionId, afterwards: Afterwards) -> bool {
-        let Some(connection) =
-            self.model.connection_mut(id).filter(|connection| connection.tune.is_running())
-        else {
+        let Some(connection) = self.model.connection_mut(id).filter(|connection| connection.may_owe()) else {
             return false;
         };
         let again = connection.tune.afterwards.replace(afterwards) == Some(afterwards);
@@ -83,6 +82,7 @@ impl App {
             return false;
         }
         connection.tune.cancel(afterwards.why());
+        connection.examination.cancel(Gravity::Warning, afterwards.why());
         connection.rest();
         self.request_of(id, Request::Disarm);
         self.model.messages.note(WindowStatusMessage::FollowsWhenPutBack { what: afterwards.what() });
@@ -91,8 +91,7 @@ impl App {
 
     /// Does what was put off, once nothing runs any more.
     pub(super) fn follow_run(&mut self, id: ConnectionId) {
-        let Some(connection) =
-            self.model.connection_mut(id).filter(|connection| !connection.tune.is_running())
+        let Some(connection) = self.model.connection_mut(id).filter(|connection| !connection.may_owe())
         else {
             return;
         };

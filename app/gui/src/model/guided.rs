@@ -22,10 +22,12 @@ pub enum GuidedAction {
 impl Connection {
     /// Whether a job moves the motors, or may; the sliders rest meanwhile.
     pub fn is_guided(&self) -> bool {
-        self.generator.job.is_running()
-            || self.qpps.job.is_running()
-            || self.tune.is_running()
-            || self.examination.is_running()
+        self.generator.job.is_running() || self.qpps.job.is_running() || self.may_owe()
+    }
+
+    /// Whether something runs that puts back what it changed when it ends: until then the unit must not be turned away from.
+    pub fn may_owe(&self) -> bool {
+        self.tune.is_running() || self.examination.is_running()
     }
 
     /// The legs of the profile that is set, or why there are none.

@@ -105,3 +105,31 @@ fn stop_ends_it_and_what_was_changed_is_put_back() {
     assert!(said.iter().any(|text| text.contains("ended before its end: Stop was pressed")), "{said:?}");
     assert_eq!(ram(&bench), before);
 }
+
+#[test]
+fn another_unit_that_is_chosen_meanwhile_is_not_given_what_is_put_back() {
+    let mut bench = Bench::with_two_units();
+    bench.connect();
+    bench.harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::Num2);
+    bench.pass_ms(8000);
+    let both = |bench: &Bench| bench.line.with(|bus| [0, 1].map(|unit| bus.controllers()[unit].settings()));
+    let before = both(&bench);
+    bench.model().front.examination.open = true;
+    bench.pass_ms(200);
+    tick(&mut bench, "Look at the loops of a motor");
+    bench.press("Examine");
+    for _ in 0..4000 {
+        bench.pass_ms(50);
+        if bench.real_duty(Motor::M1).abs() > 0.05 {
+            break;
+        }
+    }
+    assert!(bench.real_duty(Motor::M1).abs() > 0.05, "{:?}", bench.said());
+    bench.press("0x81  MCP266");
+    run(&mut bench);
+    bench.pass_ms(3000);
+    let said = bench.said();
+    assert_eq!(bench.model().front.link.selected, Some(0x81), "{said:?}");
+    assert!(bench.both_stand());
+    assert_eq!(both(&bench), before);
+}
