@@ -18,7 +18,7 @@ use super::{LineStop, STOP_LIMIT};
 /// Those who are heard at the same time.
 const GUESTS: usize = 8;
 /// How long a question may take to come.
-const QUESTION_LIMIT: Duration = Duration::from_secs(1);
+pub(super) const QUESTION_LIMIT: Duration = Duration::from_secs(1);
 /// No question is longer: all the addresses that there are, and the secret.
 const LONGEST_QUESTION: usize = 2048;
 /// How long an answer may take to be taken.
@@ -73,7 +73,8 @@ impl Door {
         DOOR.get_or_init(|| Self::open().ok()).clone()
     }
 
-    fn open() -> io::Result<Arc<Self>> {
+    /// Another one.
+    pub(super) fn open() -> io::Result<Arc<Self>> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0))?;
         let at = listener.local_addr()?;
         let door = Arc::new(Self { at, lines: Mutex::default(), guests: AtomicUsize::new(0) });

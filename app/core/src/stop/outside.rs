@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use brushwork_link::ConnectTarget;
 use brushwork_link::device::{Addresses, Stopper};
 
-use super::door::{Answer, Door, Question, Word};
+use super::door::{Answer, Door, QUESTION_LIMIT, Question, Word};
 use super::note::{self, Note};
 use super::{LineStop, STOP_LIMIT};
 use crate::keep::folder;
@@ -22,6 +22,8 @@ const CONNECT_LIMIT: Duration = Duration::from_millis(250);
 const HEARD_LIMIT: Duration = Duration::from_secs(2);
 /// How much longer the answer may take than the stop.
 const MARGIN: Duration = Duration::from_secs(1);
+/// How long one is asked again who sends away without a word: whoever says nothing keeps a place among the few that are heard for a second at most.
+const AGAIN_LIMIT: Duration = QUESTION_LIMIT.saturating_add(Duration::from_millis(500));
 /// How long one look at a connection waits.
 const SLICE: Duration = Duration::from_millis(20);
 /// No answer is longer: 127 nodes with all that can be said of each.
@@ -64,7 +66,11 @@ pub enum Asked {
 /// `brushwork stop` says who holds the port.
 #[must_use]
 pub fn hold(target: &ConnectTarget, stopper: Stopper) -> Option<Hold> {
-    hold_in(&folder()?, note::lines_of(target), stopper)
+    let lines = note::lines_of(target);
+    if lines.is_empty() {
+        return None;
+    }
+    hold_in(&folder()?, Door::of_program()?, lines, stopper)
 }
 
 /// Has whoever holds `target` stop it, its units and those at `addresses`. Several may hold what is behind a TCP server: all are asked.
@@ -80,11 +86,7 @@ fn folder() -> Option<PathBuf> {
     Some(folder::data()?.join(note::FOLDER))
 }
 
-fn hold_in(folder: &Path, lines: Vec<String>, stopper: Stopper) -> Option<Hold> {
-    if lines.is_empty() {
-        return None;
-    }
-    let door = Door::of_program()?;
+fn hold_in(folder: &Path, door: Arc<Door>, lines: Vec<String>, stopper: Stopper) -> Option<Hold> {
     let note = Note {
         program: program(),
         process: std::process::id(),
@@ -122,25 +124,47 @@ impl Drop for Hold {
 
 /// Asks all at once, then hears each.
 fn ask_each(notes: Vec<(PathBuf, Note)>, addresses: Addresses, goes_on: &dyn Fn() -> bool) -> Asked {
+    let again_until = Instant::now() + AGAIN_LIMIT;
     let asked: Vec<_> = notes.into_iter().map(|(path, note)| (knock(&note, addresses), path, note)).collect();
     let mut came = Asked::Nobody;
-    for (knocked, path, note) in asked {
+    for (mut knocked, path, note) in asked {
         let holder = Holder { program: note.program.clone(), process: note.process };
-        let answer = match knocked {
-            Ok(stream) => hear(stream, &note, holder, goes_on),
-            // Nobody listens there any more: it died without clearing up.
-            Err(error) if error.kind() == io::ErrorKind::ConnectionRefused => None,
-            Err(_) => Some(Asked::Silent(holder)),
+        let answer = loop {
+            let heard = match knocked {
+                Ok(stream) => hear(stream, &note, &holder, goes_on),
+                // Nobody listens there any more: it died without clearing up.
+                Err(error) if error.kind() == io::ErrorKind::ConnectionRefused => Heard::Stranger,
+                Err(_) => Heard::Holder(Asked::Silent(holder.clone())),
+            };
+            match heard {
+                Heard::Holder(answer) => break answer,
+                // Whoever lets go of a line takes its note away; where it stands still, others may only have been there first.
+                Heard::SentAway if path.exists() && Instant::now() < again_until && goes_on() => {
+                    std::thread::sleep(SLICE);
+                    knocked = knock(&note, addresses);
+                }
+                Heard::SentAway => break Asked::Gone(holder),
+                Heard::Stranger => {
+                    let _ = std::fs::remove_file(&path);
+                    break Asked::Gone(holder);
+                }
+            }
         };
-        let answer = answer.unwrap_or_else(|| {
-            let _ = std::fs::remove_file(&path);
-            Asked::Gone(Holder { program: note.program.clone(), process: note.process })
-        });
         if answer.weight() > came.weight() {
             came = answer;
         }
     }
     came
+}
+
+/// Who was met behind a note.
+enum Heard {
+    /// Its holder, and this came of it.
+    Holder(Asked),
+    /// Somebody who hung up before a word.
+    SentAway,
+    /// Somebody else, or nobody.
+    Stranger,
 }
 
 fn knock(note: &Note, addresses: Addresses) -> io::Result<TcpStream> {
@@ -159,38 +183,40 @@ fn knock(note: &Note, addresses: Addresses) -> io::Result<TcpStream> {
     Ok(stream)
 }
 
-/// Hears a holder out. None where somebody else listens there.
-fn hear(mut stream: TcpStream, note: &Note, holder: Holder, goes_on: &dyn Fn() -> bool) -> Option<Asked> {
+/// Hears a holder out.
+fn hear(mut stream: TcpStream, note: &Note, holder: &Holder, goes_on: &dyn Fn() -> bool) -> Heard {
     let asked_at = Instant::now();
     let (mut bytes, mut part) = (Vec::new(), [0; 4096]);
     let mut is_heard = false;
-    loop {
+    let came = loop {
         while let Some(end) = bytes.iter().position(|byte| *byte == b'\n') {
             let line: Vec<u8> = bytes.drain(..=end).collect();
-            let answer: Answer =
-                serde_json::from_slice(&line).ok().filter(|answer: &Answer| answer.secret == note.answer)?;
+            let answer =
+                serde_json::from_slice(&line).ok().filter(|answer: &Answer| answer.secret == note.answer);
+            let Some(answer) = answer else { return Heard::Stranger };
             match answer.word {
                 Word::Heard => is_heard = true,
-                Word::Stopped(stop) => return Some(Asked::Stopped(holder, stop)),
-                Word::NotServed => return Some(Asked::NotServed(holder)),
-                Word::Ended => return Some(Asked::Gone(holder)),
+                Word::Stopped(stop) => return Heard::Holder(Asked::Stopped(holder.clone(), stop)),
+                Word::NotServed => return Heard::Holder(Asked::NotServed(holder.clone())),
+                Word::Ended => return Heard::Holder(Asked::Gone(holder.clone())),
             }
         }
         let limit = if is_heard { STOP_LIMIT + MARGIN } else { HEARD_LIMIT };
         match stream.read(&mut part) {
-            Ok(0) => return Some(Asked::Gone(holder)),
-            Ok(count) if bytes.len() < LONGEST_ANSWER => bytes.extend(&part[..count]),
-            Ok(_) => return None,
+            Ok(count @ 1..) if bytes.len() < LONGEST_ANSWER => bytes.extend(&part[..count]),
+            Ok(1..) => return Heard::Stranger,
             Err(error) if is_nothing_yet(&error) => {}
-            Err(_) => return Some(Asked::Gone(holder)),
+            Ok(0) | Err(_) if is_heard => break Asked::Gone(holder.clone()),
+            Ok(0) | Err(_) => return Heard::SentAway,
         }
         if !goes_on() {
-            return Some(Asked::Interrupted);
+            break Asked::Interrupted;
         }
         if asked_at.elapsed() > limit {
-            return Some(if is_heard { Asked::NotServed(holder) } else { Asked::Silent(holder) });
+            break if is_heard { Asked::NotServed(holder.clone()) } else { Asked::Silent(holder.clone()) };
         }
-    }
+    };
+    Heard::Holder(came)
 }
 
 fn is_nothing_yet(error: &io::Error) -> bool {
@@ -255,7 +281,13 @@ mod tests {
             let session =
                 session::open(&target, SessionOptions::default(), SystemClock::shared(), None).unwrap();
             let folder = tempfile::tempdir().unwrap();
-            let hold = hold_in(folder.path(), vec![LINE.to_owned()], session.device.stopper());
+            // A door of its own: whoever knocks at it in one test keeps nobody out in another.
+            let hold = hold_in(
+                folder.path(),
+                Door::open().unwrap(),
+                vec![LINE.to_owned()],
+                session.device.stopper(),
+            );
             let held = Self { session, folder, hold };
             held.wait_for(|event| matches!(event, Event::Selected { .. }));
             held
@@ -328,10 +360,10 @@ mod tests {
     #[test]
     fn a_wrong_secret_stops_nothing_and_gets_no_word() {
         let held = Held::new();
-        for wrong in ["", "0", &note::secret()] {
-            let notes = held.note(|note| note.question = wrong.to_owned());
-            assert!(matches!(ask_each(notes, Addresses::Scan, &|| true), Asked::Gone(_)));
-        }
+        let (path, note) = held.notes().remove(0);
+        let wrong = ["".to_owned(), "0".to_owned(), note::secret()]
+            .map(|question| (path.clone(), Note { question, ..note.clone() }));
+        assert!(matches!(ask_each(wrong.to_vec(), Addresses::Scan, &|| true), Asked::Gone(_)));
         assert!(!held.was_stopped());
         assert!(matches!(held.ask(), Asked::Stopped(..)), "the right one does");
     }
@@ -359,8 +391,8 @@ mod tests {
         let held = Held::new();
         let at = held.notes()[0].1.at;
         let silent: Vec<_> = (0..20).map(|_| door_of(at)).collect();
-        let ask = || matches!(held.ask(), Asked::Stopped(..)).then_some(());
-        until_some("an answer", ask, || "none".to_owned());
+        let asked = held.ask();
+        assert!(matches!(asked, Asked::Stopped(..)), "asked once, it waits for its turn: {asked:?}");
         drop(silent);
     }
 
