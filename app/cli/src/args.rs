@@ -218,6 +218,7 @@ pub struct AddressArgs {
         "drive --connect {sim} --motor 1 --duty 25 --for 2",
         "drive --connect /dev/ttyACM0 --motor both --speed -12000 --accel 24000 --for 5",
         "drive --connect /dev/ttyACM0 --motor 2 --position 4000 --speed-limit 8000 --for 3",
+        "drive --connect /dev/ttyUSB0,baud=115200 --address 0x80-0x84 --motor both --duty 20",
     ], "Both motors are stopped when the time is over, on Ctrl-C, SIGTERM, SIGHUP, a closed pipe, a fault or a lost link.")
 )]
 pub struct DriveArgs {

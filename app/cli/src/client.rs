@@ -1,6 +1,6 @@
 //! A controller as a command sees it: connected and identified, or a sentence and an exit code.
 
-use crate::messages::CliLinkMessage;
+use crate::messages::{CliLinkMessage, CliUnitsMessage};
 use std::fmt::Display;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -100,6 +100,34 @@ impl Client {
         };
         Store::of_user().close_update(place);
         Ok(Self { session, identity, stream })
+    }
+
+    /// Opens a line with all the units that are meant of it. The first one is selected, and the one that speaks for the client.
+    ///
+    /// # Errors
+    /// Says on standard error what went wrong and gives the exit code.
+    pub fn connect_all(
+        args: &ConnectArgs,
+        poll: PollRate,
+        interrupt: &Interrupt,
+    ) -> Result<(Self, Vec<Identity>), Exit> {
+        let line = Line { address: args.address.as_ref(), ..args.line() };
+        let target = line_target(&line)?;
+        let options = SessionOptions { addresses: line.sought(), family: family(&target, args), poll };
+        let session = session::open(&target, options, SystemClock::shared(), None)
+            .map_err(|error| Exit::NoLink.saying(error))?;
+        interrupt.hold_line();
+        let (units, failures) = look_on(&session, interrupt)?;
+        failures.iter().for_each(say);
+        let Some(identity) = units.first().cloned() else {
+            let place = args.place().to_owned();
+            return Err(with_loader(Exit::NoLink.saying(CliUnitsMessage::NoneAt { place }), args.place()));
+        };
+        let ports = list_ports().unwrap_or_default();
+        units.iter().for_each(|unit| cut_short::announce(&UnitId::new(unit, &ports), args.place()));
+        Store::of_user().close_update(args.place());
+        ask(&session.device, Request::Select(identity.address))?;
+        Ok((Self { session, identity, stream: None }, units))
     }
 
     /// The device thread.
@@ -325,7 +353,24 @@ fn wait_for_identity(
 /// # Errors
 /// The link is lost (said on standard error) or the program was asked to end.
 pub fn next_event(device: &DeviceHandle, interrupt: &Interrupt) -> Result<Option<Event>, Exit> {
-    look_for_event(device, interrupt)?.map_err(|failure| Exit::NoLink.saying(failure))
+    event_within(device, EVENT_SLICE, interrupt)
+}
+
+/// The same for one of several links, each of which is looked at for its part of that moment.
+///
+/// # Errors
+/// As for [`next_event`].
+pub fn event_of(device: &DeviceHandle, several: usize, interrupt: &Interrupt) -> Result<Option<Event>, Exit> {
+    let part = u32::try_from(several.max(1)).unwrap_or(u32::MAX);
+    event_within(device, EVENT_SLICE / part, interrupt)
+}
+
+fn event_within(
+    device: &DeviceHandle,
+    slice: Duration,
+    interrupt: &Interrupt,
+) -> Result<Option<Event>, Exit> {
+    look_within(device, slice, interrupt)?.map_err(|failure| Exit::NoLink.saying(failure))
 }
 
 /// The same, with the loss of the link as the failure that it is.
@@ -336,10 +381,18 @@ pub fn look_for_event(
     device: &DeviceHandle,
     interrupt: &Interrupt,
 ) -> Result<Result<Option<Event>, Failure>, Exit> {
+    look_within(device, EVENT_SLICE, interrupt)
+}
+
+fn look_within(
+    device: &DeviceHandle,
+    slice: Duration,
+    interrupt: &Interrupt,
+) -> Result<Result<Option<Event>, Failure>, Exit> {
     if interrupt.is_raised() {
         return Err(Exit::Interrupted);
     }
-    match device.events().recv_timeout(EVENT_SLICE) {
+    match device.events().recv_timeout(slice) {
         Ok(Event::Lost(failure)) => Ok(Err(failure)),
         Ok(Event::Stopped(report)) if report.from_outside => {
             say(CoreStatusMessage::Stopped { reason: DisarmReason::StopFromOutside });
@@ -375,23 +428,46 @@ fn not_asked(refused: impl Display) -> Exit {
 ///
 /// # Errors
 /// It is refused, or nobody answers; the reasons are said on standard error.
-#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 pub fn arm(device: &DeviceHandle, scope: ArmScope, interrupt: &Interrupt) -> Result<(), Exit> {
-    device.renew();
-    ask(device, Request::Arm(scope))?;
-    let reasons = wait(device, interrupt, |event| match event {
-        Event::Armed { warnings, .. } => {
-            warnings.iter().for_each(say);
-            Some(Vec::new())
+    arm_all(&[device], scope, interrupt)
+}
+
+/// Arms several links at a time. Those that are armed already are renewed until the last one is.
+///
+/// # Errors
+/// One is refused, or nobody answers; the reasons are said on standard error.
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
+pub fn arm_all(devices: &[&DeviceHandle], scope: ArmScope, interrupt: &Interrupt) -> Result<(), Exit> {
+    for device in devices {
+        device.renew();
+        ask(device, Request::Arm(scope))?;
+    }
+    let mut waiting = devices.to_vec();
+    let deadline = Instant::now() + ANSWER_LIMIT;
+    while !waiting.is_empty() && Instant::now() < deadline {
+        let mut still = Vec::new();
+        for device in &waiting {
+            devices.iter().for_each(|device| device.renew());
+            match event_of(device, waiting.len(), interrupt)? {
+                Some(Event::Armed { warnings, .. }) => {
+                    warnings.iter().for_each(say);
+                    continue;
+                }
+                Some(Event::ArmRefused { reasons, .. }) => {
+                    reasons.iter().for_each(|reason| say(reason.to_string()));
+                    return Err(Exit::Refused);
+                }
+                Some(Event::Failure(failure)) => say(failure.to_string()),
+                _ => {}
+            }
+            still.push(*device);
         }
-        Event::ArmRefused { reasons, .. } => Some(reasons),
-        _ => None,
-    })?;
-    if reasons.is_empty() {
+        waiting = still;
+    }
+    if waiting.is_empty() {
         return Ok(());
     }
-    reasons.iter().for_each(|reason| say(reason.to_string()));
-    Err(Exit::Refused)
+    Err(Exit::NoLink.saying(CliLinkMessage::NoAnswerWithin { seconds: ANSWER_LIMIT.as_secs() }))
 }
 
 /// Takes events until one gives an answer, renewing the dead-man meanwhile.

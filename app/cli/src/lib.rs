@@ -17,6 +17,7 @@ mod exit;
 pub mod family;
 pub mod guardian;
 pub mod interrupt;
+mod joined;
 mod list;
 pub mod mcp;
 pub mod mecc;

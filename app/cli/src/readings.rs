@@ -5,8 +5,6 @@ use brushwork_link::device::Newest;
 use brushwork_link::{Channel, Event, Identity, SettingsImage, StatusReport, Stream};
 use serde_json::{Map, Value, json};
 
-use super::output::say;
-
 /// The newest of everything.
 #[derive(Default)]
 pub struct Readings {
@@ -27,16 +25,15 @@ pub struct Readings {
 impl Readings {
     /// Takes over what an event tells.
     #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
-    pub fn take(&mut self, event: Event) {
+    pub fn take(&mut self, event: &Event) {
         match event {
             Event::Sample(sample) => {
                 self.is_all_read |= sample.is_all_read;
-                self.newest.update(&sample);
+                self.newest.update(sample);
             }
-            Event::Capabilities { map, .. } => self.capabilities = map,
-            Event::Status(status) => self.status = Some(status),
-            Event::Selected { stream, .. } => self.stream = stream,
-            Event::Failure(failure) => say(failure.to_string()),
+            Event::Capabilities { map, .. } => self.capabilities = map.clone(),
+            Event::Status(status) => self.status = Some(*status),
+            Event::Selected { stream, .. } => self.stream = *stream,
             _ => {}
         }
     }

@@ -40,10 +40,12 @@ pub fn run(args: &StatusArgs, out: &mut Output, interrupt: &Interrupt) -> Result
     let first_deadline = Instant::now() + FIRST_READING_LIMIT;
     while !readings.is_complete(&client.identity) && Instant::now() < first_deadline {
         if let Some(event) = client.next_event(interrupt)? {
-            readings.take(event);
+            take(&mut readings, &event);
         }
     }
-    read_setup(&client, &mut readings, interrupt)?;
+    if !args.together {
+        read_setup(&client, &mut readings, interrupt)?;
+    }
     print(args, &client.identity, &readings, out)?;
     if !args.watch {
         return Ok(Exit::Done);
@@ -51,13 +53,21 @@ pub fn run(args: &StatusArgs, out: &mut Output, interrupt: &Interrupt) -> Result
     let mut next = Instant::now() + args.interval;
     loop {
         if let Some(event) = client.next_event(interrupt)? {
-            readings.take(event);
+            take(&mut readings, &event);
         }
         if Instant::now() >= next {
             next += args.interval;
             print(args, &client.identity, &readings, out)?;
         }
     }
+}
+
+/// Takes over what an event tells; a failure is said.
+fn take(readings: &mut Readings, event: &Event) {
+    if let Event::Failure(failure) = event {
+        say(failure.to_string());
+    }
+    readings.take(event);
 }
 
 /// The settings in RAM and the inputs, for the diagnosis; what cannot be read is told.
@@ -86,7 +96,7 @@ fn read_setup(client: &Client, readings: &mut Readings, interrupt: &Interrupt) -
                 }
                 return Ok(());
             }
-            Some(event) => readings.take(event),
+            Some(event) => take(readings, &event),
             None => {}
         }
     }

@@ -230,10 +230,25 @@ fn wait_for_report(device: &DeviceHandle) -> Result<StopReport, Exit> {
 /// # Errors
 /// The stop was not confirmed, or a loop was left off, so that nothing holds the motor now.
 pub fn stop_driven(device: &DeviceHandle, identity: &Identity) -> Result<(), Exit> {
-    device.stop_all();
-    let report = wait_for_report(device)?;
-    matters(&report, std::slice::from_ref(identity)).into_iter().for_each(|(_, text)| say(text));
-    if report.confirmed() && !report.left_a_loop_off() { Ok(()) } else { Err(Exit::Refused) }
+    stop_all_driven(&[(device, std::slice::from_ref(identity))])
+}
+
+/// The same of several links at a time, each with its units.
+///
+/// # Errors
+/// As for [`stop_driven`], of the worst.
+pub fn stop_all_driven(links: &[(&DeviceHandle, &[Identity])]) -> Result<(), Exit> {
+    // Each has its stop before any is waited for.
+    links.iter().for_each(|(device, _)| device.stop_all());
+    let mut ended = Ok(());
+    for (device, units) in links {
+        let came = wait_for_report(device).and_then(|report| {
+            matters(&report, units).into_iter().for_each(|(_, text)| say(text));
+            if report.confirmed() && !report.left_a_loop_off() { Ok(()) } else { Err(Exit::Refused) }
+        });
+        ended = ended.and(came);
+    }
+    ended
 }
 
 impl Stopped {

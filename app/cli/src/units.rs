@@ -75,7 +75,8 @@ fn together(command: &mut Command) -> Option<Together> {
         return None;
     }
     let together = Together { json: args.json, again: args.watch.then_some(args.interval) };
-    (args.json, args.watch) = (true, false);
+    // The table tells nothing that the settings are needed for, and reading them takes the time of many rounds.
+    (args.json, args.watch, args.together) = (true, false, !together.json);
     Some(together)
 }
 

@@ -150,6 +150,46 @@ fn the_state_of_a_rover_stands_in_one_table_with_who_is_silent() {
 }
 
 #[test]
+fn boards_of_a_rover_are_driven_together_on_one_line_and_on_two_or_not_at_all() {
+    let rover = || {
+        let boards = ["--model", "roboclaw-2x7a", "--generation", "4", "--address", "0x80-0x82"];
+        Simulated::start(&boards)
+    };
+    let line = rover();
+    let write = ["settings", "write", "unit.serial_timeout=1", "--address", "0x80-0x82", "--yes"];
+    brushwork(&line, &write).ended_with(DONE);
+    let drive = ["drive", "--motor", "both", "--duty", "25", "--for", "0.6", "--json"];
+    let on = |addresses: &'static str| [&drive[..], &["--address", addresses]].concat();
+    let last_of = |run: Run, count: usize| -> Vec<Value> {
+        let lines = run.stdout.lines().rev().take(count);
+        let mut last: Vec<Value> = lines.map(|line| serde_json::from_str(line).expect("JSON")).collect();
+        last.reverse();
+        last
+    };
+    let last = last_of(brushwork(&line, &on("0x80-0x82")).ended_with(DONE), 3);
+    let addresses: Vec<_> = last.iter().map(|object| object["address"].clone()).collect();
+    assert_eq!(addresses, [0x80, 0x81, 0x82]);
+    for object in &last {
+        let speed = object["readings"]["m2_velocity"].as_f64().expect("it is read");
+        assert!(speed > 500.0, "{object}");
+    }
+    brushwork(&line, &on("0x80-0x83"))
+        .ended_with(NO_LINK)
+        .explains("Nothing was moved: nobody answers at 0x83 on");
+    let other = rover();
+    // One of the second line has no time-out.
+    let write = ["settings", "write", "unit.serial_timeout=1", "--address", "0x80-0x81", "--yes"];
+    brushwork(&other, &write).ended_with(DONE);
+    let both = |addresses| brushwork(&line, &[&on(addresses)[..], &["-c", &other.port()]].concat());
+    both("0x82").ended_with(REFUSED).explains("time-out");
+    let last = last_of(both("0x81").ended_with(DONE), 2);
+    let places: Vec<_> = last.iter().map(|object| object["connect"].clone()).collect();
+    assert_eq!(places, [other.port(), line.port()], "in the order in which they were named");
+    let at_rest = brushwork(&line, &["status", "--address", "all", "--json"]).ended_with(DONE).json();
+    assert_eq!(each(&at_rest, "/result/readings/m1_pwm"), [0.0; 3]);
+}
+
+#[test]
 fn an_address_is_given_to_one_unit_read_back_and_saved() {
     let line = rover("0x80,0x82");
     let address = |words: &[&str]| brushwork(&line, &[&["address"], words].concat());

@@ -192,6 +192,37 @@ fn ctrl_c_of_a_drive_without_an_address_stops_the_other_units_of_the_line_too() 
     }
 }
 
+#[test]
+fn however_a_drive_of_several_units_ends_none_of_them_is_left_driven() {
+    let line = OnPty::line(&[0x80, 0x81, 0x84]);
+    let target = format!("{},stream=ttl1", line.port().display());
+    let words =
+        ["drive", "--connect", &target, "--address", "0x80,0x81,0x84", "--motor", "both", "--duty", "30"];
+    for signal in ["KILL", "INT"] {
+        let ending = (0..TRIES).find_map(|_| {
+            let mut program = start(&[&words[..], &["--for", "600"]].concat());
+            program.wait_for("0x84 on ", LIMIT);
+            let all = || line.driven() == [true; 3];
+            // Whoever is starved is stopped by its own dead-man before.
+            wait::until(
+                "driven motors, or the end",
+                || all() || !program.is_running(),
+                || format!("{:?}", line.driven()),
+            );
+            program.signal(signal);
+            let ending = program.finish(LIMIT);
+            (!ending.was_starved()).then_some(ending)
+        });
+        let ending = ending.expect("the program has the processor now and then");
+        // The units' own time-out is a minute.
+        wait::until(
+            "the bridges",
+            || line.driven() == [false; 3],
+            || format!("{:?} {ending:?}", line.driven()),
+        );
+    }
+}
+
 // ---------------------------------------------------------------------------------------------------------------------
 // brushwork drive
 

@@ -7,11 +7,12 @@ use std::time::Duration;
 use brushwork_link::Interruption;
 use brushwork_link::Stream;
 use brushwork_link::device::{
-    ArmScope, DeviceHandle, DeviceOptions, DisarmReason, Drive, DriveCommand, Event, Job, JobEnding,
+    ArmScope, Channel, DeviceHandle, DeviceOptions, DisarmReason, Drive, DriveCommand, Event, Job, JobEnding,
     PollRate, Request,
 };
 use brushwork_link::settings::read_all;
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
+use brushwork_mcp_sim::settings::Settings;
 use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::packet_serial::{Address, Generation, Request as Packet, number};
 use brushwork_plant::faults::{Direction, Fault, FaultEffect};
@@ -322,6 +323,101 @@ fn the_ten_motors_of_a_rover_stand_after_one_stop_on_its_line() {
     }
     assert_eq!(link.stops()[0].units.len(), 5);
     assert!(link.stops()[0].confirmed(), "{:?}", link.stops());
+}
+
+/// Three units on a TTL line, the second set up by `second`, joined and not armed yet.
+fn joined(second: impl Fn(&mut ControllerConfig), faults: Vec<Fault>) -> VirtualLink {
+    let units = [0x80, 0x81, 0x85].map(|address| {
+        let number = Address::new(address).expect("it is one of the eight");
+        let mut config = ControllerConfig { address: number, ..ControllerConfig::default() };
+        if address == 0x81 {
+            second(&mut config);
+        }
+        Controller::new(config).expect("it is sound")
+    });
+    let bus = Bus::new(units.to_vec(), StreamIndex::Uart1).expect("TTL is a bus");
+    let options = DeviceOptions { stream: Some(Stream::Ttl1), simulated: true, ..DeviceOptions::default() };
+    let mut link = VirtualLink::new(bus, StreamIndex::Uart1, options, faults, 1);
+    link.run_for(ms(3_000));
+    link.ask(Request::Select(0x85));
+    link.ask(Request::Join(vec![0x80, 0x81]));
+    link
+}
+
+/// The same, armed and driven at half duty.
+fn joined_and_driven() -> VirtualLink {
+    let mut link = joined(|_| (), Vec::new());
+    assert!(link.arm(ArmScope::CommandLine), "{:?}", link.events);
+    link.drive(0.5);
+    link.run_for(ms(500));
+    assert!((0..3).all(|unit| link.duties(unit).iter().all(|duty| *duty > 0.4)), "all move");
+    link.events.clear();
+    link
+}
+
+fn assert_all_stand(link: &mut VirtualLink) {
+    (0..3).for_each(|unit| assert_standing(link, unit));
+}
+
+#[test]
+fn units_that_are_joined_move_and_are_read_together_and_the_dead_man_stands_all_of_them() {
+    let mut link = joined_and_driven();
+    link.run_for(ms(5_000));
+    assert_eq!(disarm_reasons(&link), [], "no time-out of any of them runs out while they are read");
+    for address in [0x80, 0x81, 0x85] {
+        let samples = link.events.iter().filter_map(|(_, event)| match event {
+            Event::Sample(sample) if sample.address == address => sample.get(Channel::M2_VELOCITY),
+            _ => None,
+        });
+        assert!(samples.filter(|speed| *speed > 100.0).count() > 20, "0x{address:02X} is read");
+    }
+    link.freeze_window();
+    link.run_for(ms(700));
+    assert_eq!(disarm_reasons(&link), [DisarmReason::DeadMan]);
+    let stopped: Vec<u8> = link.stops()[0].units.iter().map(|unit| unit.address).collect();
+    assert_eq!(stopped, [0x85, 0x80, 0x81]);
+    assert!(link.stops()[0].confirmed());
+    assert_all_stand(&mut link);
+}
+
+#[test]
+fn a_fault_or_the_silence_of_one_joined_unit_stands_all_of_them() {
+    let mut link = joined_and_driven();
+    link.apply(0, &WorldAction::EStop { pressed: true });
+    link.run_for(ms(600));
+    assert!(matches!(disarm_reasons(&link).as_slice(), [DisarmReason::Fault(_)]), "{:?}", link.events);
+    assert_all_stand(&mut link);
+
+    let mut link = joined_and_driven();
+    link.apply(1, &WorldAction::Power { on: false });
+    link.run_for(ms(1_000));
+    assert_eq!(disarm_reasons(&link), [DisarmReason::NoAnswer]);
+    [0, 2].into_iter().for_each(|unit| assert_standing(&mut link, unit));
+}
+
+#[test]
+fn of_joined_units_none_is_armed_unless_all_can_be_and_another_selection_parts_them() {
+    let no_time_out = |config: &mut ControllerConfig| {
+        let mut settings = Settings::factory(config.model, config.address.get());
+        settings.streams[StreamIndex::Uart1.index()].timeout_ms = 0;
+        config.settings = Some(settings);
+    };
+    let mut link = joined(no_time_out, Vec::new());
+    assert!(!link.arm(ArmScope::CommandLine));
+    link.drive(0.5);
+    link.run_for(ms(300));
+    assert!((0..3).all(|unit| link.duties(unit) == [0.0, 0.0]), "none moves");
+
+    let mut link = joined_and_driven();
+    link.ask(Request::Select(0x85));
+    link.run_for(ms(500));
+    assert_eq!(disarm_reasons(&link), [DisarmReason::Selection]);
+    assert_all_stand(&mut link);
+    assert!(link.arm(ArmScope::CommandLine), "{:?}", link.events);
+    link.drive(0.5);
+    link.run_for(ms(300));
+    assert_eq!([0, 1].map(|unit| link.duties(unit)), [[0.0; 2]; 2], "the selected one moves alone");
+    assert!(link.duties(2).iter().all(|duty| *duty > 0.4));
 }
 
 #[test]

@@ -181,6 +181,7 @@ impl History {
                     DisarmReason::Fault(_)
                         | DisarmReason::Restarted
                         | DisarmReason::NoAnswer
+                        | DisarmReason::NotTogether
                         | DisarmReason::LinkLost
                         | DisarmReason::DeadMan
                 );

@@ -291,6 +291,7 @@ impl LinkView {
             DisarmReason::Fault(_)
             | DisarmReason::Restarted
             | DisarmReason::NoAnswer
+            | DisarmReason::NotTogether
             | DisarmReason::LinkLost => Gravity::Error,
             DisarmReason::DeadMan => Gravity::Warning,
             _ => Gravity::Note,

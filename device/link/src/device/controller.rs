@@ -44,7 +44,7 @@ pub struct PollList {
 }
 
 /// What was found when arming was asked for.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ArmCheck {
     /// Why it cannot be; empty if it can.
     pub reasons: Vec<Failure>,
@@ -52,6 +52,20 @@ pub struct ArmCheck {
     pub controller_timeout: Option<Duration>,
     /// What does not speak against it but should be known, as sentences.
     pub warnings: Vec<Message>,
+}
+
+impl ArmCheck {
+    /// What was found of two units that move together: the shorter time-out is the one that has to be fed.
+    #[must_use]
+    pub fn with(mut self, other: Self) -> Self {
+        self.reasons.extend(other.reasons);
+        self.warnings.extend(
+            other.warnings.into_iter().filter(|warning| !self.warnings.contains(warning)).collect::<Vec<_>>(),
+        );
+        let timeouts = self.controller_timeout.into_iter().chain(other.controller_timeout);
+        self.controller_timeout = timeouts.min();
+        self
+    }
 }
 
 /// One unit on a link.

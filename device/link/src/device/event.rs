@@ -159,6 +159,8 @@ pub enum DisarmReason {
     Restarted,
     /// A command went unconfirmed, so that nobody knows what the motors do.
     NoAnswer,
+    /// One of several units that move together did not take a command that others have taken.
+    NotTogether,
     /// The job that moved the motors ended.
     JobEnded,
     /// The link was lost.
@@ -217,6 +219,9 @@ impl fmt::Display for DisarmReason {
             Self::NoAnswer => f.write_str(
                 "Disarmed: the controller does not answer any more: check its power, its cable and the line",
             ),
+            Self::NotTogether => {
+                f.write_str("Disarmed: one of the controllers that move together did not take the command")
+            }
             Self::JobEnded => f.write_str("Disarmed: the job that moved the motors has ended"),
             Self::LinkLost => f.write_str("Disarmed: the link was lost"),
             Self::Closing => f.write_str("Disarmed: the link is being closed"),

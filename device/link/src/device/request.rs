@@ -12,6 +12,8 @@ use brushwork_values::{Motor, Value};
 pub enum Request {
     /// Makes the unit at this address the one that the other requests speak of. Disarms.
     Select(u8),
+    /// Makes the units at these addresses be armed, driven and read together with the selected one, until another selection. Disarms.
+    Join(Vec<u8>),
     /// Sets how often the signals are read.
     Poll(PollRate),
     /// Sets whether sweeps read the input pins too, which takes a long reply each time.

@@ -107,7 +107,8 @@ impl DeviceLoop {
         let others = (0..self.units.len()).filter(|index| *index != selected);
         let all = std::iter::once(selected).chain(others).filter(|index| *index < self.units.len());
         let armed = self.armed.is_some();
-        all.filter(|index| everything || self.units[*index].moved || armed && *index == selected).collect()
+        all.filter(|index| everything || self.units[*index].moved || armed && self.is_together(*index))
+            .collect()
     }
 
     pub(super) fn stop_bytes(&self, reason: &DisarmReason) -> StopBytes {

@@ -93,6 +93,7 @@ impl DeviceLoop {
             reads_signals: false,
             units: Vec::new(),
             selected: 0,
+            joined: Vec::new(),
             armed: None,
             held: Vec::new(),
             sweep: Sweep::new(now),
@@ -309,6 +310,15 @@ impl DeviceLoop {
         }
     }
 
+    /// The units that move together, the selected one first.
+    fn together(&self) -> impl Iterator<Item = usize> + use<> {
+        std::iter::once(self.selected).chain(self.joined.clone())
+    }
+
+    fn is_together(&self, index: usize) -> bool {
+        index == self.selected || self.joined.contains(&index)
+    }
+
     /// Lets the selected unit do something that was asked for at `asked_at`.
     fn act<T>(
         &mut self,
@@ -335,10 +345,14 @@ impl DeviceLoop {
 
     /// Tells a failure of an act, unless something broke in that is served anyway. A lost link ends the loop.
     fn tell(&mut self, tried: ActMessage, error: &ExchangeError) {
+        self.tell_of(self.selected, tried, error);
+    }
+
+    fn tell_of(&mut self, index: usize, tried: ActMessage, error: &ExchangeError) {
         if error.is_link_lost() {
             self.lose(error);
         } else if error.interruption().is_none() {
-            let failure = error.failure(tried, self.name_of(self.selected));
+            let failure = error.failure(tried, self.name_of(index));
             self.outbox.send(Event::Failure(failure));
         }
     }

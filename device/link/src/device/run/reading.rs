@@ -39,7 +39,9 @@ impl DeviceLoop {
         }
         let Some((index, item)) = self.sweep.items.pop_front() else { return self.end_sweep() };
         let mut sample = std::mem::replace(&mut self.sweep.sample, Sample::new(0));
-        let mut other = Sample::new(self.units[index].controller.identity().address);
+        let address = self.units[index].controller.identity().address;
+        let of_it = self.sweep.other.take().filter(|other| other.address == address);
+        let mut other = of_it.unwrap_or_else(|| Sample::new(address));
         let into = if index == self.selected { &mut sample } else { &mut other };
         let read = self.act_on(index, now, |controller, line| controller.poll(line, item, into));
         self.sweep.sample = sample;
@@ -47,7 +49,10 @@ impl DeviceLoop {
             Ok(status) => {
                 self.sweep.failures_in_a_row = 0;
                 self.units[index].plan.answered(item);
-                if !other.is_empty() {
+                if self.sweep.items.front().is_some_and(|(next, _)| *next == index) {
+                    self.sweep.other = Some(other);
+                } else if !other.is_empty() {
+                    self.set_setpoints(index, &mut other);
                     // A graph counts the samples of the selected unit alone, so that this one has no number.
                     self.outbox.send(Event::Sample(Box::new(other)));
                 }
@@ -68,6 +73,10 @@ impl DeviceLoop {
         self.sweep.begun_at = now;
         let (selected, with_signals) = (self.selected, self.reads_signals);
         self.sweep.items.extend(unit.plan.sweep(now, with_signals).into_iter().map(|item| (selected, item)));
+        for index in self.joined.clone() {
+            let items = self.units[index].plan.sweep(now, false);
+            self.sweep.items.extend(items.into_iter().map(|item| (index, item)));
+        }
         let others = self.look_at_another(now);
         self.sweep.items.extend(others);
     }
@@ -79,7 +88,7 @@ impl DeviceLoop {
         }
         self.sweep.other_unit = (self.sweep.other_unit + 1) % self.units.len();
         let index = self.sweep.other_unit;
-        if index == self.selected {
+        if self.is_together(index) {
             return Vec::new();
         }
         let plan = &mut self.units[index].plan;
@@ -98,14 +107,19 @@ impl DeviceLoop {
             return;
         }
         sample.is_all_read = self.units[self.selected].plan.is_all_read(now);
+        self.set_setpoints(self.selected, &mut sample);
+        self.send_sample(sample);
+    }
+
+    /// Puts what a unit was last told beside what it measures.
+    fn set_setpoints(&self, index: usize, sample: &mut Sample) {
         let (from, to) = (sample.requested_at, sample.replied_at);
-        let setpoints = self.units[self.selected].setpoints;
+        let setpoints = self.units[index].setpoints;
         for (setpoint, channel) in setpoints.into_iter().zip([Channel::M1_SETPOINT, Channel::M2_SETPOINT]) {
             if let Some(value) = setpoint {
                 sample.set(channel, value, from, to);
             }
         }
-        self.send_sample(sample);
     }
 
     /// Numbers a sample and sends it.
@@ -134,11 +148,11 @@ impl DeviceLoop {
         let changed = plan.last_status.is_none_or(|last| last.word != status.word);
         let restarted = plan.last_status.is_some_and(|last| status.has_restarted_since(&last));
         plan.last_status = Some(status);
-        if changed || status.at >= plan.status_told_at + STATUS_INTERVAL {
-            plan.status_told_at = status.at;
+        if changed || plan.status_told_at.is_none_or(|told_at| status.at >= told_at + STATUS_INTERVAL) {
+            plan.status_told_at = Some(status.at);
             self.outbox.send(Event::Status(status));
         }
-        if self.armed.is_none() || index != self.selected {
+        if self.armed.is_none() || !self.is_together(index) {
             return;
         }
         let faults: Vec<_> = status.faults().collect();
@@ -163,7 +177,7 @@ impl DeviceLoop {
             // The rest of the unit waits for the next sweep, so that the others are heard in time.
             self.sweep.items.retain(|(other, _)| *other != index);
         }
-        if self.armed.is_some() && index == self.selected {
+        if self.armed.is_some() && self.is_together(index) {
             return self.halt(DisarmReason::NoAnswer);
         }
         let silent_since = self.exchange.last_reply_at().max(self.sweep.restarted_at);

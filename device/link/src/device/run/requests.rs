@@ -41,6 +41,7 @@ impl DeviceLoop {
         let overtaken = envelope.stops != self.signals.stops();
         match request {
             Request::Select(address) => self.select(address),
+            Request::Join(addresses) => self.join(&addresses),
             Request::Poll(rate) => {
                 self.poll = rate;
                 self.restart_sweep();
@@ -97,8 +98,40 @@ impl DeviceLoop {
     }
 
     fn select(&mut self, address: u8) {
+        let Some(index) = self.unit_at(address) else { return };
+        if index != self.selected || !self.joined.is_empty() {
+            if self.armed.is_some() {
+                self.halt(DisarmReason::Selection);
+            }
+            self.selected = index;
+            self.joined.clear();
+            self.restart_sweep();
+        }
+        self.tell_selection();
+    }
+
+    fn join(&mut self, addresses: &[u8]) {
+        let Some(found) = addresses.iter().map(|address| self.unit_at(*address)).collect::<Option<Vec<_>>>()
+        else {
+            return;
+        };
+        if self.armed.is_some() {
+            self.halt(DisarmReason::Selection);
+        }
+        let selected = self.selected;
+        self.joined.clear();
+        for index in found.into_iter().filter(|index| *index != selected) {
+            if !self.joined.contains(&index) {
+                self.joined.push(index);
+            }
+        }
+        self.restart_sweep();
+    }
+
+    /// The unit at an address; that there is none is told.
+    fn unit_at(&mut self, address: u8) -> Option<usize> {
         let found = self.units.iter().position(|unit| unit.controller.identity().address == address);
-        let Some(index) = found else {
+        if found.is_none() {
             let family = self.units.first().map(|unit| unit.controller.identity().family);
             let place = family.map_or_else(|| address.to_string(), |family| family.address_text(address));
             let failure = Failure::new(
@@ -107,19 +140,12 @@ impl DeviceLoop {
                 CauseMessage::NoSuchUnit,
                 RemedyMessage::ConnectAnew,
             );
-            return self.outbox.send(Event::Failure(failure));
-        };
-        if index != self.selected {
-            if self.armed.is_some() {
-                self.halt(DisarmReason::Selection);
-            }
-            self.selected = index;
-            self.restart_sweep();
+            self.outbox.send(Event::Failure(failure));
         }
-        self.tell_selection();
+        found
     }
 
-    /// Arms when the controller itself would stop the motors if this program died.
+    /// Arms when the controller itself would stop the motors if this program died; of several that move together each of them.
     fn arm(&mut self, scope: ArmScope, overtaken: bool, disarms: u64) {
         if let Some(armed) = self.armed.filter(|armed| armed.scope == scope && !overtaken) {
             return self.tell_armed(armed, Vec::new());
@@ -132,17 +158,33 @@ impl DeviceLoop {
         }
         let stream = self.stream;
         let now = self.clock.now();
-        match self.act(now, |unit, line| {
-            let mut check = unit.check_arming(line, stream)?;
-            if check.reasons.is_empty() {
-                check.warnings.extend(unit.other_drivers(line)?);
+        let mut all = ArmCheck::default();
+        for index in self.together() {
+            let checked = self.act_on(index, now, |unit, line| {
+                let mut check = unit.check_arming(line, stream)?;
+                if check.reasons.is_empty() {
+                    check.warnings.extend(unit.other_drivers(line)?);
+                }
+                Ok(check)
+            });
+            match checked {
+                Ok(check) => all = all.with(check),
+                Err(error) if error.is_link_lost() => return self.lose(&error),
+                Err(error) => {
+                    let on = self.name_of(index);
+                    all.reasons.push(Failure::new(
+                        ActMessage::Arm { scope },
+                        on,
+                        error.message(),
+                        error.remedy(),
+                    ));
+                    break;
+                }
             }
-            Ok(check)
-        }) {
-            Ok(check) if check.reasons.is_empty() => self.enter_armed(scope, check, disarms),
-            Ok(ArmCheck { reasons, .. }) => self.outbox.send(Event::ArmRefused { scope, reasons }),
-            Err(error) if error.is_link_lost() => self.lose(&error),
-            Err(error) => self.refuse(scope, error.message(), error.remedy()),
+        }
+        match all {
+            check if check.reasons.is_empty() => self.enter_armed(scope, check, disarms),
+            ArmCheck { reasons, .. } => self.outbox.send(Event::ArmRefused { scope, reasons }),
         }
     }
 
@@ -150,8 +192,12 @@ impl DeviceLoop {
         let ArmCheck { controller_timeout, mut warnings, .. } = check;
         let armed = Armed { scope, controller_timeout };
         warnings.extend(self.have_guard());
-        let lends = self.units[self.selected].controller.lends();
-        warnings.extend(self.lend(self.selected, &lends));
+        for index in self.together() {
+            let lends = self.units[index].controller.lends();
+            warnings.extend(self.lend(index, &lends));
+            // Whoever drives from now on may not have heard how it stands.
+            self.units[index].plan.status_told_at = None;
+        }
         self.armed = Some(armed);
         self.tend_guard();
         self.guard.set_armed(true, disarms);
@@ -183,22 +229,33 @@ impl DeviceLoop {
         if let Some(came_back) = refusal {
             return self.tell_not_sent(ActMessage::Move, came_back);
         }
-        let sent_at = self.clock.now();
-        match self.act(asked_at, |unit, line| unit.drive(line, &drive)) {
-            Ok(()) => self.note_drive(&drive, sent_at),
-            Err(error) => {
-                let unsure = is_unsure(&error);
-                self.tell(ActMessage::Move, &error);
-                if unsure {
-                    self.halt(DisarmReason::NoAnswer);
+        let mut moved = false;
+        for index in self.together() {
+            let sent_at = self.clock.now();
+            match self.act_on(index, asked_at, |unit, line| unit.drive(line, &drive)) {
+                Ok(()) => self.note_drive_of(index, &drive, sent_at),
+                Err(error) => {
+                    let unsure = is_unsure(&error);
+                    self.tell_of(index, ActMessage::Move, &error);
+                    if unsure {
+                        self.halt(DisarmReason::NoAnswer);
+                    } else if moved && self.armed.is_some() && error.interruption().is_none() {
+                        self.halt(DisarmReason::NotTogether);
+                    }
+                    return;
                 }
             }
+            moved = true;
         }
     }
 
     /// A motion command was confirmed.
     pub(super) fn note_drive(&mut self, drive: &Drive, sent_at: Duration) {
-        let unit = &mut self.units[self.selected];
+        self.note_drive_of(self.selected, drive, sent_at);
+    }
+
+    fn note_drive_of(&mut self, index: usize, drive: &Drive, sent_at: Duration) {
+        let unit = &mut self.units[index];
         for motor in Motor::BOTH {
             if let Some(command) = drive.of(motor) {
                 unit.setpoints[motor.index()] = Some(command.setpoint());

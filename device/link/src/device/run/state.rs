@@ -42,6 +42,8 @@ pub struct DeviceLoop {
     pub(super) stream: Option<Stream>,
     pub(super) units: Vec<Unit>,
     pub(super) selected: usize,
+    /// Units that are armed, driven and read together with the selected one.
+    pub(super) joined: Vec<usize>,
     pub(super) armed: Option<Armed>,
     /// What the guard was told last: whether something is armed, and of each unit whether it moved and its script was started.
     pub(super) held: Vec<(bool, bool)>,

@@ -17,6 +17,8 @@ pub const SUSPENSION: Duration = Duration::from_secs(30);
 pub struct Sweep {
     pub items: VecDeque<(usize, PollItem)>,
     pub sample: Sample,
+    /// What was read of another unit so far.
+    pub other: Option<Sample>,
     pub begun_at: Duration,
     pub next_at: Duration,
     pub other_unit: usize,
@@ -32,6 +34,7 @@ impl Sweep {
         Self {
             items: VecDeque::new(),
             sample: Sample::new(0),
+            other: None,
             begun_at: now,
             next_at: now,
             other_unit: 0,
@@ -44,6 +47,7 @@ impl Sweep {
     /// Drops what is under way.
     pub fn abandon(&mut self) {
         self.items.clear();
+        self.other = None;
     }
 }
 
@@ -56,7 +60,8 @@ pub struct Plan {
     misses: Vec<(PollItem, u32, Duration)>,
     read: HashSet<PollItem>,
     pub last_status: Option<StatusReport>,
-    pub status_told_at: Duration,
+    /// When its status was told last; none tells the next one, changed or not.
+    pub status_told_at: Option<Duration>,
 }
 
 impl Plan {
@@ -70,7 +75,7 @@ impl Plan {
             misses: Vec::new(),
             read: HashSet::new(),
             last_status: None,
-            status_told_at: Duration::ZERO,
+            status_told_at: None,
         }
     }
 
