@@ -164,8 +164,12 @@ messages! {
 }
 
 messages! {
-    /// What is said of MeccCode programs.
+    /// What is said of MeccCode programs, and where that of a board is started.
     pub enum CliMeccMessage {
+        NoBoard { unit: String, port: String } "Nothing was started: {unit} on {port} is no MotorVator, which alone starts a program by G.",
+        Start { port: String } "Start the program in the memory of the board on {port}? It may move motors at once, and unless it is the host library nothing on this line stops it: keep the switch of the motors' power at hand.",
+        LibraryRuns { version: u8, port: String } "The host library {version} runs on the board on {port}, which can be driven now.",
+        OtherRuns { port: String } "The line was sent to the board on {port}. The host library does not answer: whatever runs there now is not driven from here.",
         Lost { count: u64 } "{count} transmissions were lost, each since the one before it was still under way: send from the handler of TransmitEvent.",
         BoardSays { words: String } "The board's command line says: {words}",
         TraceFull { bytes: usize } "The trace ends early: it has {bytes} MB.",

@@ -59,6 +59,25 @@ fn nothing_is_driven_where_the_host_library_does_not_answer() {
 }
 
 #[test]
+fn a_program_in_the_boards_memory_is_started_at_the_owners_word_and_driven_if_it_is_the_library() {
+    let waiting =
+        |words: &[&str]| Simulated::start(&[&["--model", "motorvator-3", "--started", "no"], words].concat());
+    let line = waiting(&[]);
+    on(&line, &["drive", "--duty", "40", "--for", "1"]).ended_with(REFUSED).explains("does not answer");
+    on(&line, &["mecc", "start"])
+        .ended_with(REFUSED)
+        .explains("It may move motors at once")
+        .explains("--yes");
+    on(&line, &["mecc", "start", "--yes"]).ended_with(DONE).prints("The host library 2 runs on the board");
+    on(&line, &["drive", "--duty", "40", "--for", "0.5"]).ended_with(DONE).prints("40.0 %");
+    let other = waiting(&["--program", FLASH]);
+    on(&other, &["mecc", "start", "--yes"]).ended_with(DONE).prints("The host library does not answer");
+    run(program().args(["mecc", "start", "--yes", "--connect", "sim:mcp266"]))
+        .ended_with(REFUSED)
+        .explains("is no MotorVator");
+}
+
+#[test]
 fn a_stepper_is_configured_through_the_settings_which_are_not_kept() {
     let line = line();
     let read = || on(&line, &["settings", "read", "--address", "2", "--json"]).ended_with(DONE).json();

@@ -6,7 +6,7 @@ use std::time::Duration;
 use clap::{Args, Subcommand};
 
 use crate::new_file::Replace;
-use crate::shared_args::parse_time;
+use crate::shared_args::{ConnectArgs, parse_time};
 
 /// Arguments of `brushwork mecc`.
 #[derive(Debug, Args)]
@@ -23,6 +23,8 @@ pub enum MeccCommand {
     Check(CheckArgs),
     /// Run a program on a simulated board in virtual time.
     Run(RunArgs),
+    /// Start the program in a board's memory.
+    Start(StartArgs),
     /// Bring programs into one style.
     Fmt(FmtArgs),
     /// Print the language reference.
@@ -81,6 +83,22 @@ pub struct RunArgs {
     /// Print no warnings.
     #[arg(long, short = 'q')]
     pub quiet: bool,
+}
+
+/// Arguments of `brushwork mecc start`.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    brushwork mecc start --connect /dev/ttyUSB0,family=motorvator\n  \
+    brushwork mecc start --connect /dev/ttyUSB0,family=motorvator --yes\n\n\
+    The board begins its program with the line G. If that is the host library (assets/mecc/host.mecc), the board is driven from here afterwards.\n\
+    Any other may move motors at once, and nothing on the line stops it.")]
+pub struct StartArgs {
+    /// The board.
+    #[command(flatten)]
+    pub connect: ConnectArgs,
+    /// Start without asking.
+    #[arg(long)]
+    pub yes: bool,
 }
 
 /// Arguments of `brushwork mecc fmt`.

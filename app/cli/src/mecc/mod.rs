@@ -1,11 +1,12 @@
 //! The MotorVator V3 on the command line: its part of the shared commands, and `brushwork mecc`: programs without a window, which are checked, run and
-//! formatted, and the language reference.
+//! formatted, the start of a board's own, and the language reference.
 
 mod args;
 mod decoder;
 mod language;
 mod run;
 mod sim;
+mod start;
 mod terminal;
 
 use brushwork_link::device::Identity;
@@ -37,7 +38,8 @@ impl Family for MotorvatorCommands {
     }
 
     fn commands(&self) -> Vec<Tool> {
-        let about = "Check, run and format MeccCode programs; print the language reference";
+        let about =
+            "Check, run and format MeccCode programs, start that of a board; print the language reference";
         vec![Tool::new("mecc", 41, about, run)]
     }
 
@@ -131,6 +133,7 @@ fn run(args: &MeccArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit,
     match &args.command {
         MeccCommand::Check(args) => scripts::check(MECC, &args.files, args.json, args.deny_warnings, out),
         MeccCommand::Run(args) => run::run(args, out, interrupt),
+        MeccCommand::Start(args) => start::run(args, out, interrupt),
         MeccCommand::Fmt(args) => scripts::fmt(MECC, &args.files, args.check, out),
         MeccCommand::Reference(args) => {
             Page::new(&words::page(), &words::reference()).print(args.json, out)?;

@@ -209,6 +209,7 @@ impl History {
             | Event::Driven { .. }
             | Event::Transacted { .. }
             | Event::RawReply { .. }
+            | Event::ProgramStarted { .. }
             | Event::LoaderEntered
             | Event::JobStarted { .. }
             | Event::JobProgress { .. }

@@ -194,6 +194,7 @@ impl LinkView {
             }
             Event::Driven { .. }
             | Event::RawReply { .. }
+            | Event::ProgramStarted { .. }
             | Event::Transacted { .. }
             | Event::JobStarted { .. }
             | Event::JobProgress { .. }

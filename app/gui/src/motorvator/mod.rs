@@ -1,5 +1,6 @@
 //! MotorVator V3 in the window: its facts, the state of its screens, and the screens.
 
+mod action;
 pub mod model;
 pub mod screens;
 

@@ -114,6 +114,15 @@ fn the_terminal_makes_triplets_and_tells_what_came_back() {
         assert!(bench.sees("MotorVator AWOS 2.32"));
         type_in(&mut bench, "Line", "77 1 1 70 60");
         assert!(bench.sees("not armed"));
+        // G starts what is in the memory, here the library anew, when its risk was accepted.
+        type_in(&mut bench, "Line", "G");
+        assert!(bench.sees("It may move motors at once"), "Enter starts nothing");
+        bench.press("I have the switch of the motors' power at hand");
+        bench.press("Start the program");
+        bench.pass_ms(4000);
+        assert!(!bench.sees("It may move motors at once"));
+        type_in(&mut bench, "Line", "80 9");
+        assert!(bench.sees("host library, version 2, answer 9"));
         assert_eq!(told(&bench), [0; 4]);
         assert_eq!(bench.line.with(|machine| machine.units()), 2);
     });

@@ -144,6 +144,11 @@ pub trait Controller: Send {
         Err(ExchangeError::impossible(CauseMessage::NoScripts))
     }
 
+    /// Starts the program in the unit's memory. The user has accepted that nothing here may be able to stop it.
+    fn start_program(&mut self, _line: &mut Line<'_>) -> Result<(), ExchangeError> {
+        Err(ExchangeError::impossible(CauseMessage::NoProgram))
+    }
+
     /// Sends the unit into its firmware loader, after which it understands nothing of this family any more. The user has accepted
     /// the risk.
     fn enter_loader(&mut self, _line: &mut Line<'_>) -> Result<(), ExchangeError> {
@@ -168,7 +173,7 @@ pub trait Controller: Send {
         Err(ExchangeError::impossible(CauseMessage::NotExamined))
     }
 
-    /// Finds out anew what can be read from it, after what was known of its firmware was forgotten.
+    /// Finds out anew what can be read from it, after what was known of its firmware was forgotten, or a program has begun on it.
     fn look_again(&mut self, _line: &mut Line<'_>) -> Result<(), ExchangeError> {
         Ok(())
     }

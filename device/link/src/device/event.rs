@@ -90,6 +90,11 @@ pub enum Event {
         /// The bytes.
         result: Result<Vec<u8>, Failure>,
     },
+    /// The program in a unit's memory was started; who answers now was told before.
+    ProgramStarted {
+        /// The unit's address.
+        address: u8,
+    },
     /// The unit is in its firmware loader, or on its way there. The link ends with this.
     LoaderEntered,
     /// A job began.
@@ -189,6 +194,7 @@ impl Event {
             | Self::Stopped(_)
             | Self::Transacted { .. }
             | Self::RawReply { .. }
+            | Self::ProgramStarted { .. }
             | Self::LoaderEntered
             | Self::Capabilities { .. }
             | Self::Link(_)

@@ -47,6 +47,9 @@ pub enum Request {
     StartScript,
     /// Stops the running script.
     StopScript,
+    /// Starts the program in the unit's memory, of which nobody here knows what it does and which nothing here may be able to stop. Answered by
+    /// [`Event::ProgramStarted`](super::Event::ProgramStarted), and by the units as they are then.
+    StartProgram(RiskAccepted),
     /// Stops the motors and sends the unit into its firmware loader. Answered by
     /// [`Event::LoaderEntered`](super::Event::LoaderEntered), which ends the link: the loader speaks another language.
     EnterLoader(RiskAccepted),

@@ -1,12 +1,14 @@
 //! The terminal: a line as it goes out, or bytes that become triplets, what it means, and what came back in words.
 
 use std::collections::VecDeque;
+use std::rc::Rc;
 
-use brushwork_link::device::Event;
+use brushwork_link::device::{Event, RiskAccepted};
 use brushwork_motorvator_client::{describe_received, describe_sent};
-use brushwork_motorvator_wire::{FRAME_BYTES, LINE_END, line_of_host};
+use brushwork_motorvator_wire::{FRAME_BYTES, LINE_END, Order, line_of_host};
 
 use crate::command::Command;
+use crate::motorvator::action::StartProgram;
 
 /// Lines kept; the oldest go first.
 const KEPT: usize = 500;
@@ -30,6 +32,8 @@ pub struct Entry {
 pub struct Terminal {
     pub typed: String,
     pub entries: VecDeque<Entry>,
+    /// The user has the switch of the motors' power at hand, and may start what is in the board's memory.
+    pub accepts_risk: bool,
     asked: u64,
 }
 
@@ -108,6 +112,20 @@ impl Terminal {
         let meaning = describe_sent(&bytes).text;
         self.entries.push_back(Entry { id, sent: shown(&bytes), meaning, answer: None });
         Some(Command::Raw { id, bytes })
+    }
+
+    /// Whether the line in the field starts the program in the board's memory.
+    pub fn is_start(&self) -> bool {
+        line_of(&self.typed).is_ok_and(|line| Order::of_line(&line[..line.len() - 1]) == Some(Order::Go))
+    }
+
+    /// Starts the program in the board's memory, if its risk was accepted.
+    pub fn start(&mut self) -> Option<Command> {
+        if !std::mem::take(&mut self.accepts_risk) || !self.is_start() {
+            return None;
+        }
+        self.typed.clear();
+        Some(Command::Own(Rc::new(StartProgram(RiskAccepted::by_the_user()))))
     }
 
     /// Takes note of an answer.

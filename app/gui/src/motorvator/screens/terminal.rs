@@ -16,7 +16,7 @@ pub fn terminal_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     if model.front.link.identity().is_none() {
         return nothing_ui(ui, &not_connected_text(&model.front.phase));
     }
-    let note = "Lines for the board's command line and data for its program, which travel as triplets. What may move a motor is refused here.";
+    let note = "Lines for the board's command line and data for its program, which travel as triplets. What may move a motor is refused here; G asks first.";
     title_ui(ui, "Terminal", note);
     let terminal = &mut model.front.motorvator_mut().terminal;
     let height = (ui.available_height() - ENTRY_HEIGHT).max(80.0);
@@ -26,6 +26,9 @@ pub fn terminal_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     });
     ui.separator();
     let entered = field_ui(ui, terminal);
+    if terminal.is_start() {
+        return start_ui(ui, terminal, commands);
+    }
     ui.horizontal(|ui| {
         let meaning = terminal.meaning();
         let clicked = ui.add_enabled(meaning.is_ok(), Button::new("Send line")).clicked();
@@ -37,6 +40,18 @@ pub fn terminal_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             Err(why) => ui.add(Label::new(RichText::new(why).weak()).truncate()),
         };
     });
+}
+
+/// G begins a program of which nobody here knows what it does: no key alone starts it.
+fn start_ui(ui: &mut Ui, terminal: &mut Terminal, commands: &mut Commands) {
+    ui.horizontal(|ui| {
+        if ui.add_enabled(terminal.accepts_risk, Button::new("Start the program")).clicked() {
+            commands.extend(terminal.start());
+        }
+        ui.checkbox(&mut terminal.accepts_risk, "I have the switch of the motors' power at hand");
+    });
+    let risk = "It may move motors at once, and unless it is the host library nothing on this line stops it.";
+    ui.add(Label::new(RichText::new(risk).weak()).truncate());
 }
 
 fn list_ui(ui: &mut Ui, terminal: &Terminal) {

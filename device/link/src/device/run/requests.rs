@@ -68,6 +68,7 @@ impl DeviceLoop {
             }
             Request::StartScript => self.start_script(asked_at, overtaken),
             Request::StopScript => self.stop_script(asked_at),
+            Request::StartProgram(_) => self.start_program(asked_at, overtaken),
             Request::EnterLoader(_) => self.enter_loader(asked_at, overtaken),
             Request::Transact { id, command, values } => {
                 self.transact(id, command, values, asked_at, overtaken);
@@ -288,6 +289,28 @@ impl DeviceLoop {
         let (came_back, remedy) = (CauseMessage::NoScript { answer }, RemedyMessage::DownloadFirst);
         let failure = Failure::new(ActMessage::StartScript, self.name_of(self.selected), came_back, remedy);
         self.outbox.send(Event::Failure(failure));
+    }
+
+    /// Starts what is in the selected unit's memory, and looks anew who answers on the line. It is nothing that this program has set in motion:
+    /// a stop that it does not understand would be repeated for ever.
+    fn start_program(&mut self, asked_at: Duration, overtaken: bool) {
+        if overtaken {
+            return self.tell_not_sent(ActMessage::StartProgram, CauseMessage::Stopped);
+        }
+        if self.armed.is_some() && !self.halt_and_confirm(DisarmReason::SettingsChanged) {
+            return;
+        }
+        let address = self.units[self.selected].controller.identity().address;
+        let mut done = self.act(asked_at, |unit, line| unit.start_program(line));
+        for index in 0..self.units.len() {
+            done = done.and_then(|()| self.act_on(index, asked_at, |unit, line| unit.look_again(line)));
+            self.outbox.send(Event::Connected(self.units[index].controller.identity().clone()));
+        }
+        match done {
+            Ok(()) => self.outbox.send(Event::ProgramStarted { address }),
+            Err(error) => self.tell(ActMessage::StartProgram, &error),
+        }
+        self.restart_sweep();
     }
 
     fn stop_script(&mut self, asked_at: Duration) {

@@ -3,7 +3,7 @@
 use crate::controller::traffic::{describe_received, describe_sent};
 use crate::controller::unit::Board;
 use crate::controller::values::{order_of, values_of};
-use crate::controller::{arming, driving, polling, raw, stopping};
+use crate::controller::{arming, discover, driving, polling, raw, stopping};
 use crate::messages::MotorvatorCauseMessage;
 use brushwork_link::Message;
 use brushwork_link::device::controller::{ArmCheck, Controller, Line, PollItem, PollList};
@@ -72,6 +72,16 @@ impl Controller for Board {
 
     fn raw(&mut self, line: &mut Line<'_>, bytes: &[u8]) -> Result<Vec<u8>, ExchangeError> {
         raw::send(&mut self.speaker, line, bytes)
+    }
+
+    fn start_program(&mut self, line: &mut Line<'_>) -> Result<(), ExchangeError> {
+        raw::start(&mut self.speaker, line)
+    }
+
+    fn look_again(&mut self, line: &mut Line<'_>) -> Result<(), ExchangeError> {
+        let found = self.speaker.look(line)?;
+        self.identity = discover::identify(line, self.half, found, self.identity.simulated);
+        Ok(())
     }
 
     /// A program that begins anew is another one, for all that anybody knows.

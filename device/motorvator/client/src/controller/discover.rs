@@ -56,7 +56,7 @@ fn halves(addresses: Addresses) -> Vec<Half> {
     Half::ALL.into_iter().filter(is_asked).collect()
 }
 
-fn identify(line: &mut Line<'_>, half: Half, found: Found, simulated: bool) -> Identity {
+pub fn identify(line: &mut Line<'_>, half: Half, found: Found, simulated: bool) -> Identity {
     let note = match found {
         Found::Library(host::VERSION) => None,
         Found::Library(version) => Some(MotorvatorIdentityMessage::OtherLibrary { version }),

@@ -41,6 +41,19 @@ pub fn send(speaker: &mut Speaker, line: &mut Line<'_>, bytes: &[u8]) -> Result<
     }
 }
 
+/// Starts the program in the board's memory. Whatever it is, it has not answered yet.
+pub fn start(speaker: &mut Speaker, line: &mut Line<'_>) -> Result<(), ExchangeError> {
+    speaker.has_library = false;
+    let bytes = [b'G', LINE_END];
+    let outgoing = Outgoing { bytes: &bytes, reply_length: 28, patience: LISTEN_FOR, retries: 0, once: true };
+    let (exchange, watch) = line.parts();
+    match exchange.exchange(&outgoing, watch, &mut |_| Judgement::More(1)) {
+        Err(error) if error.is_link_lost() || error.interruption().is_some() => Err(error),
+        // The manual names no answer to it.
+        Ok(_) | Err(_) => Ok(()),
+    }
+}
+
 fn gate(speaker: Speaker, line: &Line<'_>, order: &Order) -> Result<(), ExchangeError> {
     let permit = line.permit();
     let needs_arming = |command: String| Err(ExchangeError::NotArmed { command });
