@@ -8,6 +8,7 @@
 //! the exact solution of the linear equations over the step, and only friction and the events are treated step by step. That
 //! makes the step stable for any winding, inertia or spring, and cheap enough for two axes at many hundred times real time.
 
+#![doc = include_str!("../README.md")]
 #![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
 
 mod axis;

@@ -1,4 +1,4 @@
-//! Ready-made axes: the files of `assets/presets`, built into the program.
+//! Ready-made axes: the files of `presets`, built into the program.
 //!
 //! A preset holds an axis, the supply it is meant for, and the figures a data sheet would state for it, which a test measures
 //! on the simulated axis.
@@ -45,14 +45,14 @@ pub struct StatedFigures {
 
 static PRESETS: LazyLock<Vec<Preset>> = LazyLock::new(|| {
     const FILES: [&str; 8] = [
-        include_str!("../../../assets/presets/small-gearmotor.json"),
-        include_str!("../../../assets/presets/large-gearmotor.json"),
-        include_str!("../../../assets/presets/direct-drive.json"),
-        include_str!("../../../assets/presets/linear-actuator.json"),
-        include_str!("../../../assets/presets/flywheel.json"),
-        include_str!("../../../assets/presets/coarse-encoder.json"),
-        include_str!("../../../assets/presets/steering.json"),
-        include_str!("../../../assets/presets/arm-joint.json"),
+        include_str!("../presets/small-gearmotor.json"),
+        include_str!("../presets/large-gearmotor.json"),
+        include_str!("../presets/direct-drive.json"),
+        include_str!("../presets/linear-actuator.json"),
+        include_str!("../presets/flywheel.json"),
+        include_str!("../presets/coarse-encoder.json"),
+        include_str!("../presets/steering.json"),
+        include_str!("../presets/arm-joint.json"),
     ];
     FILES
         .iter()

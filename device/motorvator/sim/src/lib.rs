@@ -2,6 +2,7 @@
 //!
 //! Programs are those of `brushwork_script::mecc`; the byte code of the real board is not public. What no page says stands in [`assumed`].
 
+#![doc = include_str!("../README.md")]
 #![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
 
 pub mod assumed;

@@ -6,7 +6,7 @@ use super::{Frame, LINE_END, line_of_host, parse_line_of_board};
 use std::fmt;
 
 /// The library, as a program of the board.
-pub const LIBRARY: &str = include_str!("../../../../assets/mecc/host.mecc");
+pub const LIBRARY: &str = include_str!("../host.mecc");
 /// Its version.
 pub const VERSION: u8 = 2;
 /// Motor outputs.

@@ -5,6 +5,7 @@
 //! command line ignores it. A host sends the letter `I`, one to eight triplets and a carriage return; what is missing is 0. Two of the
 //! manual's three worked examples are wrong: "TX123456" has 27 digits that spell TX012345, and `I003` is shown with 23 of them.
 
+#![doc = include_str!("../README.md")]
 #![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
 
 pub mod host;

@@ -30,12 +30,12 @@ fn assert_within(got: f64, range: [f64; 2], what: &str, preset: &Preset) {
 fn there_are_at_least_six_presets_each_with_its_file_name_and_a_description() {
     assert!(presets().len() >= 6);
     for preset in presets() {
-        let file = format!("{}/../../assets/presets/{}.json", env!("CARGO_MANIFEST_DIR"), preset.key);
+        let file = format!("{}/presets/{}.json", env!("CARGO_MANIFEST_DIR"), preset.key);
         assert!(std::path::Path::new(&file).is_file(), "{file}");
         assert!(preset.description.ends_with('.') && !preset.title.is_empty());
         preset.axis.validate().expect("a preset is valid");
     }
-    let files = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/presets"));
+    let files = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/presets"));
     assert_eq!(files.expect("the folder is there").count(), presets().len(), "each file is built in");
     assert_eq!(presets()[0].key, presets::DEFAULT);
 }
