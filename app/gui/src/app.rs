@@ -301,6 +301,7 @@ impl App {
             Command::ResetEmergencyStop => {
                 self.request(Request::ResetEStop);
             }
+            Command::RunLibrary => self.run_library(),
             Command::LearnAnew => {
                 self.request(Request::LearnAnew);
             }

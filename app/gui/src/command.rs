@@ -58,6 +58,8 @@ pub enum Command {
     World(WorldAction),
     /// Something to be done with the settings of the unit that is looked at.
     Settings(SettingsAction),
+    /// Lets the simulated board in front run again what the window drives it through.
+    RunLibrary,
     /// Sends one raw command; the answer comes with `id`.
     Transact {
         id: u64,

@@ -11,6 +11,8 @@ use brushwork_link::{Addresses, Clock, ConnectTarget, Failure, PortInfo, SystemC
 use brushwork_plant::server::Pace;
 use brushwork_plant::world::{WorldAction, WorldView};
 use brushwork_script::debug::{Request, View, Wanted};
+use brushwork_script::language::Language;
+use brushwork_script::program::Program;
 use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
 use egui::Context;
 
@@ -157,6 +159,17 @@ impl SimulatedWorld for Simulation {
         Self::debug(self, unit, requests, wanted).map_err(|error| {
             let error = WindowCauseMessage::Said { text: error.to_string() };
             Failure::new(WindowActMessage::DebugScript, "", error, WindowRemedyMessage::ConnectAgain)
+        })
+    }
+
+    fn runs(&self, language: Language) -> bool {
+        Self::runs(self, language)
+    }
+
+    fn run_program(&self, unit: usize, program: Arc<Program>) -> Result<(), Failure> {
+        Self::run_program(self, unit, program).map_err(|error| {
+            let error = WindowCauseMessage::Said { text: error.to_string() };
+            Failure::new(WindowActMessage::RunProgram, "", error, WindowRemedyMessage::ConnectAgain)
         })
     }
 

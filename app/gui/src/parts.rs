@@ -9,6 +9,8 @@ use brushwork_link::{Addresses, ConnectTarget, DeviceHandle, Failure, PortInfo};
 use brushwork_plant::server::Pace;
 use brushwork_plant::world::{WorldAction, WorldView};
 use brushwork_script::debug::{Request, View, Wanted};
+use brushwork_script::language::Language;
+use brushwork_script::program::Program;
 use crossbeam_channel::Receiver;
 
 use brushwork_core::keep::Keeping;
@@ -67,6 +69,16 @@ pub trait SimulatedWorld: Send + Sync {
 
     /// Asks the debugger of a unit's script for something, and for a look at it; [`SimulatedWorld::script`] has it a moment later.
     fn debug(&self, unit: usize, requests: Vec<Request>, wanted: Wanted) -> Result<(), Failure>;
+
+    /// Whether its units run programs of a language that are put into their memory past the wire.
+    fn runs(&self, _language: Language) -> bool {
+        false
+    }
+
+    /// Puts such a program into a unit's memory and starts it.
+    fn run_program(&self, _unit: usize, _program: Arc<Program>) -> Result<(), Failure> {
+        Ok(())
+    }
 
     /// The newest look at the script that was asked for, once.
     fn script(&self) -> Option<View>;

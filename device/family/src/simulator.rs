@@ -8,7 +8,9 @@ use brushwork_plant::ParamsError;
 use brushwork_plant::machine::{Machine, StreamIndex};
 use brushwork_plant::server::ServerOptions;
 use brushwork_script::debug::{Request, View, Wanted};
-use std::sync::{PoisonError, RwLock};
+use brushwork_script::language::Language;
+use brushwork_script::program::Program;
+use std::sync::{Arc, PoisonError, RwLock};
 
 /// Units that were made, and the line that they are on.
 pub struct Started {
@@ -109,6 +111,14 @@ pub trait Simulator: Send + Sync {
     ) -> Option<View> {
         None
     }
+
+    /// Whether its units run programs of a language that are put into their memory past the wire.
+    fn runs(&self, _language: Language) -> bool {
+        false
+    }
+
+    /// Puts such a program into a unit's memory and starts it.
+    fn run_program(&self, _machine: &mut dyn Machine, _unit: usize, _program: Arc<Program>) {}
 }
 
 static SIMULATORS: RwLock<Vec<&'static dyn Simulator>> = RwLock::new(Vec::new());

@@ -13,6 +13,8 @@ use brushwork_plant::ParamsError;
 use brushwork_plant::server::{ChannelEnds, Endpoint, Server, ServerError, ServerOptions, SimHandle};
 use brushwork_plant::world::{WorldAction, WorldView};
 use brushwork_script::debug::{Request, View, Wanted};
+use brushwork_script::language::Language;
+use brushwork_script::program::Program;
 
 use super::line::SimulatedLine;
 use crate::examine::like;
@@ -158,6 +160,20 @@ impl Simulation {
             let view = simulator.debug(line.machine_mut(), unit, requests, &wanted);
             *script.lock().unwrap_or_else(PoisonError::into_inner) = view;
         })
+    }
+
+    /// Whether its units run programs of a language that are put into their memory past the wire.
+    pub fn runs(&self, language: Language) -> bool {
+        self.simulator.runs(language)
+    }
+
+    /// Puts such a program into a unit's memory and starts it. Never waits.
+    ///
+    /// # Errors
+    /// The machine has ended or its queue is full.
+    pub fn run_program(&self, unit: usize, program: Arc<Program>) -> Result<(), ServerError> {
+        let simulator = self.simulator;
+        self.server.post(move |line| simulator.run_program(line.machine_mut(), unit, program))
     }
 
     /// The newest look at the script that was asked for, once.

@@ -1,6 +1,7 @@
 //! The Debug menu: the MCL debugger of simulated controllers.
 
 use brushwork_script::debug::StepKind;
+use brushwork_script::language::Language;
 use egui::Key;
 
 use super::{Action, Keys, Ready, ctrl, key, only, shift};
@@ -54,5 +55,6 @@ fn running(model: &Model) -> Ready {
 
 fn not_running(model: &Model) -> Ready {
     can_debug(model)?;
-    only(!model.front.debug.is_running(), "The script runs already.")
+    let takes_its_place = model.front.debug.takes_mecc && model.mcl.front().language() == Language::Mecc;
+    only(takes_its_place || !model.front.debug.is_running(), "The script runs already.")
 }

@@ -1,6 +1,7 @@
 //! The Device menu (MCP manual 1.2.8) with Ion Studio's keys, and what is new: links, arming, encoders.
 
 use brushwork_link::device::ArmScope;
+use brushwork_script::language::Language;
 use brushwork_values::Motor;
 use egui::Key;
 
@@ -58,8 +59,8 @@ pub(super) const ACTIONS: &[Action] = &[
         Keys::None, |model| has(model, Ability::Generator, connected), open_generator),
     entry!(Device 4 "device.check-mcl", "Check MCL", "Compiles the open MCL program and checks it for errors.",
         key(Key::F7), always, |_| Command::Mcl(MclAction::Check)),
-    entry!(Device 4 "device.download-mcl", "Download MCL", "Downloads the MCL program to the controller's flash memory.",
-        key(Key::F5), |model| has(model, Ability::Scripts, can_download), |_| Command::DownloadMcl),
+    entry!(Device 4 "device.download-mcl", "Download MCL", "Downloads the MCL program to the controller's flash memory; MeccCode runs on the simulated board.",
+        key(Key::F5), can_download_or_run, |_| Command::DownloadMcl),
     entry!(Device 4 "device.download-image", "Download the Maker's Image File…", "Downloads a script that the maker's own program has compiled, for real controllers.",
         Keys::None, |model| has(model, Ability::Scripts, connected), |_| Command::Mcl(MclAction::ChooseImage)),
     entry!(Device 4 "device.start-script", "Start Script", "Starts the program that is in the controller.",
@@ -101,6 +102,15 @@ fn can_arm(model: &Model) -> Ready {
     connected(model)?;
     let why = "This screen moves no motor. Go to the PWM, Velocity, Position or MCL screen first.";
     only(model.arm_scope().is_some(), why)
+}
+
+/// A MeccCode program goes to a simulated board, past the wire.
+fn can_download_or_run(model: &Model) -> Ready {
+    if model.mcl.front().language() == Language::Mecc {
+        let why = "MeccCode runs on a simulated board alone. Connect to one that runs it first.";
+        return only(model.front.debug.takes_mecc, why);
+    }
+    has(model, Ability::Scripts, can_download)
 }
 
 fn can_download(model: &Model) -> Ready {

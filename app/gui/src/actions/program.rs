@@ -54,6 +54,8 @@ pub(super) const FILE: &[Action] = &[
     example!(4 "file.example-keys", "Example: Drive by Keys", "Drives both motors by letters from the terminal."),
     example!(5 "file.example-melody", "Example: Table of Steps", "Plays a table of duties and times on motor 1."),
     example!(6 "file.example-eeprom", "Example: Starts in EEPROM", "Counts its own starts in the user EEPROM."),
+    example!(7 "file.example-flash", "Example: Flash (MeccCode)", "Shows OO and XX in turn on the board's display."),
+    example!(8 "file.example-motors", "Example: Motors (MeccCode)", "Drives the motors of the board."),
 ];
 
 pub(super) const EDIT: &[Action] = &[

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use brushwork_link::device::DeviceHandle;
 use brushwork_script::debug::{Reason, Request};
+use brushwork_script::language::Language;
 use egui::Context;
 
 use super::App;
@@ -26,6 +27,7 @@ impl App {
         let Some(connection) = self.model.connection_mut(id) else { return };
         let Some(world) = world else { return connection.debug.forget() };
         connection.debug.pace = world.pace();
+        connection.debug.takes_mecc = world.runs(Language::Mecc);
         let mut stopped = false;
         if let Some(view) = world.script() {
             let was_paused = connection.debug.is_paused();
@@ -50,7 +52,8 @@ impl App {
         let debugged = of_script.and_then(|id| self.model.mcl.document(id)).unwrap_or(front);
         let breakpoints = debugged.breakpoints.iter().map(|line| line as u32 + 1).collect();
         let id = text_id(front);
-        debug.follow(&Source { id, text: &|| front.text.text(), breakpoints });
+        let (language, text) = (front.language(), || front.text.text());
+        debug.follow(&Source { id, language, text: &text, breakpoints });
     }
 
     /// Marks the line where the script stands, and how often each line was run.
@@ -98,6 +101,7 @@ impl App {
         let debug = &mut self.model.front.debug;
         match action {
             DebugAction::Run if debug.is_paused() => debug.ask(Request::Continue),
+            DebugAction::Run if self.model.mcl.front().language() == Language::Mecc => self.run_on_board(),
             DebugAction::Run => self.start_script(),
             DebugAction::Pause => debug.ask(Request::Pause),
             DebugAction::Step(kind) => debug.ask(Request::Step(kind)),

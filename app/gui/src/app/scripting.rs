@@ -4,15 +4,19 @@ use crate::messages::WindowStatusMessage;
 use crate::messages::{WindowActMessage, WindowCauseMessage, WindowRemedyMessage};
 use brushwork_link::Message;
 use std::path::Path;
+use std::sync::Arc;
 
 use brushwork_link::{ArmScope, Failure, Request};
 use brushwork_script::image;
 use brushwork_script::language::Language;
 use brushwork_script::mcl::compile;
+use brushwork_script::mecc;
+use brushwork_script::program::Program;
 use egui::{Context, ViewportCommand};
 
 use super::App;
 use crate::mcl::MclAction;
+use crate::model::message::Gravity;
 use crate::model::script::Source;
 use crate::model::{Owner, Screen};
 use brushwork_link::bounded;
@@ -71,7 +75,7 @@ impl App {
     pub(super) fn download_mcl(&mut self) {
         self.show(Screen::MclEditor);
         if self.model.mcl.front().language() == Language::Mecc {
-            return self.model.messages.fail(WindowStatusMessage::RunsOnBoardsAlone);
+            return self.run_on_board();
         }
         let simulated = self.model.front.link.identity().is_some_and(|identity| identity.simulated);
         if !simulated {
@@ -89,6 +93,42 @@ impl App {
             return self.edit_mcl(MclAction::Check);
         };
         self.send_image(&image::encode(&program), Source { title, text });
+    }
+
+    /// Compiles the MeccCode in front, puts it into the memory of the simulated board in front, past the wire, and starts it there.
+    pub(super) fn run_on_board(&mut self) {
+        self.show(Screen::MclEditor);
+        if !self.model.front.debug.takes_mecc {
+            return self.model.messages.fail(WindowStatusMessage::RunsOnBoardsAlone);
+        }
+        let document = self.model.mcl.front_mut();
+        document.known();
+        let Some(program) = mecc::compile(&document.text.text()).program else {
+            return self.edit_mcl(MclAction::Check);
+        };
+        let said = WindowStatusMessage::RunsOnBoard { title: document.title() };
+        self.model.front.debug.renew_breakpoints();
+        self.put_on_board(program, said);
+    }
+
+    /// Lets the simulated board in front run the host library again, so that the window drives it.
+    pub(super) fn run_library(&mut self) {
+        if let Some(program) = self.model.front.family().library() {
+            self.model.front.debug.leave_breakpoints();
+            self.put_on_board(program, WindowStatusMessage::LibraryRunsAgain);
+        }
+    }
+
+    fn put_on_board(&mut self, program: Program, said: WindowStatusMessage) {
+        let ctx = self.ctx.clone();
+        self.ask_debugger(&ctx);
+        let front = &self.model.front;
+        let world = self.links.get(front.id()).and_then(|link| link.world.as_ref());
+        let Some(world) = world else { return };
+        match world.run_program(front.world_unit, Arc::new(program)) {
+            Ok(()) => self.model.messages.say(Gravity::Note, said),
+            Err(failure) => self.model.messages.fail(failure.message()),
+        }
     }
 
     /// Downloads a file that the maker's own compiler has written.

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use brushwork_script::debug::code_id;
-use brushwork_script::mcl::Names;
+use brushwork_script::debug::{Names, code_id};
+use brushwork_script::language::Language;
 use crossbeam_channel::{Receiver, TryRecvError, bounded};
 
 /// A text as it was at one moment: which program, and its revision.
@@ -31,7 +31,12 @@ pub struct Compiler {
 
 impl Compiler {
     /// Has a text compiled unless it was before; takes in what has been compiled meanwhile.
-    pub fn follow(&mut self, id: TextId, text: impl FnOnce() -> String) -> Option<Compiled> {
+    pub fn follow(
+        &mut self,
+        id: TextId,
+        language: Language,
+        text: impl FnOnce() -> String,
+    ) -> Option<Compiled> {
         let done = match self.running.as_ref().map(Receiver::try_recv) {
             Some(Err(TryRecvError::Empty)) => return None,
             Some(done) => {
@@ -45,7 +50,7 @@ impl Compiler {
             let text = text();
             let (sender, receiver) = bounded(1);
             let work = move || {
-                let compiled = Names::of(&text).map(|names| Compiled {
+                let compiled = Names::of(language, &text).map(|names| Compiled {
                     text: id,
                     code: code_id(names.program()),
                     names,
@@ -54,7 +59,7 @@ impl Compiler {
                 let _ = sender.send(compiled);
             };
             // Without a thread there are no names, which the panel tells.
-            if std::thread::Builder::new().name("mcl names".to_owned()).spawn(work).is_ok() {
+            if std::thread::Builder::new().name("program names".to_owned()).spawn(work).is_ok() {
                 self.running = Some(receiver);
             }
         }

@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use brushwork_plant::server::Pace;
-use brushwork_script::debug::{Breakpoint, Reason, Request, Show, Value, View, Wanted, Watch};
-use brushwork_script::mcl::Names;
+use brushwork_script::debug::{Breakpoint, Names, Reason, Request, Show, Value, View, Wanted, Watch};
+use brushwork_script::language::Language;
 use brushwork_script::mcl::registers::RegisterId;
 use brushwork_script::op::Op;
 use brushwork_script::program::Program;
@@ -17,6 +17,7 @@ use super::terminal::Terminal;
 /// The program that is looked at, as the editor has it. Lines count from 1.
 pub struct Source<'a> {
     pub id: TextId,
+    pub language: Language,
     pub text: &'a dyn Fn() -> String,
     pub breakpoints: Vec<u32>,
 }
@@ -103,6 +104,8 @@ pub struct Debugging {
     pub freezes_world: bool,
     /// How fast the simulated controller's time goes; none where nobody can tell.
     pub pace: Option<Pace>,
+    /// The simulated controller runs MeccCode that is put into its memory past the wire.
+    pub takes_mecc: bool,
     /// Memory and registers of the last stop before this one.
     before: Snapshot,
     here: Snapshot,
@@ -128,7 +131,7 @@ pub type Happened = Option<String>;
 impl Debugging {
     /// Follows the editor: the text in front, and its breakpoints.
     pub fn follow(&mut self, source: &Source<'_>) {
-        if let Some(compiled) = self.compiler.follow(source.id, source.text) {
+        if let Some(compiled) = self.compiler.follow(source.id, source.language, source.text) {
             self.front = Some(Arc::new(compiled));
         }
         let code = self.view.as_ref().map_or(0, |view| view.code);
@@ -198,6 +201,7 @@ impl Debugging {
         self.sent_breakpoints = None;
         self.requests.clear();
         self.pace = None;
+        self.takes_mecc = false;
         self.before = Snapshot::default();
         self.here = Snapshot::default();
         self.terminal.forget();
@@ -225,6 +229,17 @@ impl Debugging {
         self.requests = requests;
     }
 
+    /// Another program comes into the controller whose text is not open: breakpoints of this one would hold it anywhere.
+    pub fn leave_breakpoints(&mut self) {
+        self.sent_breakpoints = Some(self.wanted_breakpoints());
+        self.ask(Request::Breakpoints(Vec::new()));
+    }
+
+    /// The program in front comes into the controller: its breakpoints are to be there before it starts.
+    pub fn renew_breakpoints(&mut self) {
+        self.sent_breakpoints = None;
+    }
+
     /// Gives what is typed in the terminal to the script.
     pub fn send_typed(&mut self) {
         match self.terminal.typed() {
@@ -246,6 +261,13 @@ impl Debugging {
     /// Whether the text in front is still being compiled: until then its names and conditions are not known.
     pub fn is_compiling(&self) -> bool {
         self.compiler.is_busy()
+    }
+
+    /// The language of the program in the controller, or that is to run there next.
+    pub fn language(&self) -> Language {
+        self.loaded()
+            .or(self.front.as_ref())
+            .map_or(Language::default(), |compiled| compiled.names.language())
     }
 
     pub fn program(&self) -> Option<&Arc<Program>> {

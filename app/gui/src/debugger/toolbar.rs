@@ -22,7 +22,9 @@ pub fn toolbar_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
             }
         };
         let run = if paused { "Continue" } else { "Run" };
-        button(ui, !running, run, "Goes on, or starts the script (Ctrl+F5)", DebugAction::Run);
+        // A program for a simulated board takes the place of what runs there.
+        let can_run = !running || debug.takes_mecc;
+        button(ui, can_run, run, "Goes on, or starts the script (Ctrl+F5)", DebugAction::Run);
         button(ui, running, "Pause", "Stops the script before its next line; the motors go on (Ctrl+F6)", DebugAction::Pause);
         let step = |kind| DebugAction::Step(kind);
         button(ui, paused, "Step into", "Runs one line (F11)", step(StepKind::Into));

@@ -1,6 +1,7 @@
 //! Variables and registers: what they are, and which of them have changed since the script stood here last.
 
 use brushwork_script::debug::{Show, one};
+use brushwork_script::language::Language;
 use brushwork_script::mcl::registers::RegisterId;
 use brushwork_script::op::Array;
 use brushwork_script::program::Variable;
@@ -34,6 +35,11 @@ pub fn values_ui(ui: &mut Ui, debug: &mut Debugging) {
     });
     variables_ui(ui, debug);
     ui.add_space(6.0);
+    // Registers are of MCL alone.
+    if debug.language() != Language::Mcl {
+        debug.open_groups.clear();
+        return;
+    }
     heading_ui(ui, "Registers");
     for group in RegisterGroup::ALL {
         let shown = CollapsingHeader::new(group.title()).id_salt(("registers", group)).show(ui, |ui| {

@@ -1,5 +1,6 @@
 //! Watched expressions, and the line that sets a variable or register to something else.
 
+use brushwork_script::language::Language;
 use egui::{Label, RichText, TextEdit, Ui};
 
 use super::action::DebugAction;
@@ -39,7 +40,10 @@ pub fn watches_ui(ui: &mut Ui, debug: &mut Debugging, commands: &mut Commands) {
         }
     }
     removed.into_iter().for_each(|index| drop(debug.watches.remove(index)));
-    let hint = "e.g. total / 2, text(3), MOTORENCPOS(0)";
+    let hint = match debug.language() {
+        Language::Mcl => "e.g. total / 2, text(3), MOTORENCPOS(0)",
+        Language::Mecc => "e.g. total / 2, table(3), GetClock()",
+    };
     let field = text_field_ui(ui, &mut debug.new_watch, "Add watch", hint);
     if field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter)) {
         debug.add_watch();
@@ -76,9 +80,12 @@ fn set_ui(ui: &mut Ui, debug: &mut Debugging, commands: &mut Commands) {
         Some(Err(why)) => {
             ui.add(Label::new(RichText::new(why).color(Palette::of(ui).error)).wrap());
         }
-        None => drop(
-            ui.weak("Sets a variable, an element, a part (x.bit3) or a register while the script is paused."),
-        ),
+        None => drop(ui.weak(match debug.language() {
+            Language::Mcl => {
+                "Sets a variable, an element, a part (x.bit3) or a register while the script is paused."
+            }
+            Language::Mecc => "Sets a variable or a byte of a table while the program is paused.",
+        })),
     }
 }
 

@@ -7,6 +7,7 @@ use brushwork_link::device::{
     Addresses, ArmScope, Channel, Drive, Identity, Indicator, Job, PinSignal, StatusReport,
 };
 use brushwork_link::settings::{Group, Row, SettingValue, SettingsImage, SettingsTable, Subject};
+use brushwork_script::program::Program;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::tune::Method;
 use brushwork_values::Motor;
@@ -169,6 +170,11 @@ pub trait Family: Sync {
     /// Whether a unit starts its script by itself, as far as its settings were read.
     fn autoruns(&self, _known: Known<'_>) -> bool {
         false
+    }
+
+    /// The program through which a simulated unit is driven, where there is one.
+    fn library(&self) -> Option<Program> {
+        None
     }
 
     /// The job that downloads a script from a file's bytes, and comes to a clause of what was sent.

@@ -1,4 +1,4 @@
-//! The programs that come with Brushwork, from `assets/mcl`.
+//! The programs that come with Brushwork, from `assets/mcl` and `assets/mecc`.
 
 /// An example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -9,31 +9,34 @@ pub struct Example {
 }
 
 macro_rules! example {
-    ($name:literal) => {
-        Example { title: $name, text: include_str!(concat!("../../../../assets/mcl/", $name)) }
+    ($folder:literal, $name:literal) => {
+        Example { title: $name, text: include_str!(concat!("../../../../assets/", $folder, "/", $name)) }
     };
 }
 
 /// In the order of the File menu.
-pub const EXAMPLES: [Example; 7] = [
-    example!("hello.mcl"),
-    example!("blink.mcl"),
-    example!("ramp.mcl"),
-    example!("there-and-back.mcl"),
-    example!("drive-by-keys.mcl"),
-    example!("melody.mcl"),
-    example!("starts-in-eeprom.mcl"),
+pub const EXAMPLES: [Example; 9] = [
+    example!("mcl", "hello.mcl"),
+    example!("mcl", "blink.mcl"),
+    example!("mcl", "ramp.mcl"),
+    example!("mcl", "there-and-back.mcl"),
+    example!("mcl", "drive-by-keys.mcl"),
+    example!("mcl", "melody.mcl"),
+    example!("mcl", "starts-in-eeprom.mcl"),
+    example!("mecc", "flash.mecc"),
+    example!("mecc", "motors.mecc"),
 ];
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use brushwork_script::mcl::index::check;
+    use brushwork_script::language::Language;
 
     #[test]
     fn every_example_compiles_without_a_word_of_complaint() {
         for example in EXAMPLES {
-            assert_eq!(check(example.text), [], "{}", example.title);
+            let language = Language::of_file(example.title);
+            assert_eq!(language.index(example.text).diagnostics, [], "{}", example.title);
         }
     }
 }

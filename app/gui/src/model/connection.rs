@@ -468,7 +468,8 @@ impl Connection {
 
     /// What is said on every screen of a script that runs, or may run.
     pub fn script_notice(&self) -> Option<String> {
-        if !self.is_connected() {
+        // A board that always runs one tells it on the screen of its programs.
+        if !self.is_connected() || self.debug.takes_mecc && !self.script_is_paused() {
             return None;
         }
         match (self.script_runs(), self.script_line()) {

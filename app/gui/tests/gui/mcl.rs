@@ -339,7 +339,8 @@ fn every_example_runs_on_the_simulated_controller() {
     assert_eq!(examples.len(), brushwork_gui::mcl::examples::EXAMPLES.len());
     let mut bench = editor();
     bench.connect();
-    for example in examples {
+    // Those in the other language run on another board, past the wire.
+    for example in examples.into_iter().filter(|action| !action.title.ends_with("(MeccCode)")) {
         bench.press("File");
         bench.press(example.title);
         bench.press("Toolbar Download MCL");

@@ -2,13 +2,24 @@
 //! terminal.
 
 use crate::support::alone::{LIMIT, alone};
+use crate::support::line::Line;
 use crate::support::one::One;
+use brushwork_family::Simulator as _;
 use brushwork_gui::motorvator::Motorvator;
+use brushwork_gui::parts::SimulatedWorld;
+use brushwork_link::Failure;
+use brushwork_motorvator::MotorvatorSimulator;
 use brushwork_motorvator::sim_spec::{MotorvatorSpec, library};
 use brushwork_motorvator_client::MotorvatorDriver;
 use brushwork_motorvator_sim::DrivenMotorvator;
 use brushwork_plant::machine::Machine as _;
+use brushwork_plant::server::Pace;
+use brushwork_plant::world::{WorldAction, WorldView};
+use brushwork_script::debug::{Request, View, Wanted};
+use brushwork_script::language::Language;
+use brushwork_script::program::Program;
 use egui_kittest::kittest::Queryable as _;
+use std::sync::{Arc, Mutex};
 
 type Bench = One<DrivenMotorvator>;
 
@@ -21,6 +32,121 @@ fn connected(folder: &tempfile::TempDir) -> Bench {
     bench.pass_ms(3000);
     assert!(bench.app().model.front.is_connected());
     bench
+}
+
+/// The world around a board, as the program itself reaches it.
+struct BoardWorld {
+    line: Line<DrivenMotorvator>,
+    script: Mutex<Option<View>>,
+}
+
+impl SimulatedWorld for BoardWorld {
+    fn apply(&self, unit: usize, action: WorldAction) -> Result<(), Failure> {
+        self.line.with(|machine| machine.apply(unit, &action));
+        Ok(())
+    }
+
+    fn views(&self) -> Option<Arc<Vec<WorldView>>> {
+        Some(Arc::new(self.line.with(|machine| machine.views())))
+    }
+
+    fn unit_at(&self, address: u8) -> Option<usize> {
+        usize::from(address).checked_sub(1)
+    }
+
+    fn debug(&self, unit: usize, requests: Vec<Request>, wanted: Wanted) -> Result<(), Failure> {
+        let view = self.line.with(|machine| MotorvatorSimulator.debug(machine, unit, requests, &wanted));
+        *self.script.lock().expect("no test panics with it") = view;
+        Ok(())
+    }
+
+    fn script(&self) -> Option<View> {
+        self.script.lock().expect("no test panics with it").take()
+    }
+
+    fn runs(&self, language: Language) -> bool {
+        MotorvatorSimulator.runs(language)
+    }
+
+    fn run_program(&self, unit: usize, program: Arc<Program>) -> Result<(), Failure> {
+        self.line.with(|machine| MotorvatorSimulator.run_program(machine, unit, program));
+        Ok(())
+    }
+
+    fn pace(&self) -> Option<Pace> {
+        None
+    }
+
+    fn set_pace(&self, _: Pace) {}
+}
+
+const COUNTING: &str = "Declare Word rounds
+Begin Program
+SetMotor 1, \"F\", 60
+Loop
+rounds = rounds + 1
+Wait 64
+End Loop
+End Program
+";
+
+#[test]
+fn a_program_runs_on_the_simulated_board_and_stands_where_it_is_looked_into() {
+    alone(
+        "motorvator::a_program_runs_on_the_simulated_board_and_stands_where_it_is_looked_into",
+        LIMIT,
+        || {
+            let folder = tempfile::tempdir().expect("a temporary folder can be made");
+            let spec = MotorvatorSpec::parse("motorvator-3,seed=0").expect("it is a board");
+            let board = spec.board(library()).expect("the preset is sound");
+            let world = |line| {
+                Some(Arc::new(BoardWorld { line, script: Mutex::default() }) as Arc<dyn SimulatedWorld>)
+            };
+            let family = (&MotorvatorDriver as _, &Motorvator as _);
+            let mut bench = Bench::with_world(&folder, family, board, "sim:motorvator-3", world);
+            bench.app().open("sim:motorvator-3");
+            bench.pass_ms(3000);
+            bench.press("Program");
+            bench.app().model.mcl.open_named("counting.mecc", COUNTING);
+            bench.press("Debugger");
+            bench.press("Run Program");
+            bench.pass_ms(1000);
+            assert_eq!(told(&bench), [60, 0, 0, 0], "it drives motor A");
+            assert!(bench.sees("counting.mecc runs on the simulated board."));
+            assert!(bench.sees("A script runs, line"));
+
+            // A breakpoint holds it, a name shows its value, a step runs one line, and the motor goes on meanwhile.
+            bench.app().model.mcl.front_mut().breakpoints.toggle(4);
+            bench.pass_ms(1500);
+            assert!(bench.app().model.front.debug.is_paused());
+            let view = bench.app().model.front.debug.view.clone().expect("it is looked at");
+            assert_eq!(view.line, 5);
+            let rounds = |bench: &mut Bench| {
+                let text = bench.app().model.front.debug.value_of("rounds").expect("its text is in front");
+                text.rsplit(' ').next().and_then(|number| number.parse::<u32>().ok()).expect("a number")
+            };
+            let before = rounds(&mut bench);
+            assert!(before >= 1 && bench.sees("rounds"));
+            bench.press("Step over");
+            bench.pass_ms(200);
+            assert_eq!(rounds(&mut bench), before + 1);
+            assert_eq!(told(&bench), [60, 0, 0, 0]);
+            assert!(!bench.sees("Registers"), "those are of MCL");
+            assert!(bench.app().model.front.debug.set_answer.is_none());
+
+            // The host library takes its place again, and the window drives the board.
+            bench.press("Run Host Library");
+            bench.pass_ms(3000);
+            assert!(bench.sees("The host library runs on the simulated board again."));
+            assert_eq!(told(&bench), [0; 4]);
+            // Wrong programs run nowhere.
+            bench.app().model.mcl.open_named("wrong.mecc", "Begin Program\nBeep nobody\nEnd Program\n");
+            bench.press("Run Program");
+            bench.pass_ms(500);
+            assert_eq!(told(&bench), [0; 4]);
+            assert!(bench.sees("wrong.mecc has"));
+        },
+    );
 }
 
 /// What motors A, B, C and D get, in percent.

@@ -4,7 +4,14 @@ use crate::sim_spec::{MotorvatorSpec, library};
 use brushwork_family::{Simulator, SimulatorError, Started};
 use brushwork_link::{FamilyRef, Stream};
 use brushwork_motorvator_client::{Half, MOTORVATOR, unit_address};
+use brushwork_motorvator_sim::DrivenMotorvator;
+use brushwork_plant::machine::Machine;
 use brushwork_plant::server::ServerOptions;
+use brushwork_script::debug::{Request, View, Wanted};
+use brushwork_script::language::Language;
+use brushwork_script::program::Program;
+use std::any::Any;
+use std::sync::Arc;
 
 /// What makes one.
 #[derive(Clone, Copy, Debug)]
@@ -31,4 +38,30 @@ impl Simulator for MotorvatorSimulator {
             seed: spec.seed,
         })
     }
+
+    fn debug(
+        &self,
+        machine: &mut dyn Machine,
+        _unit: usize,
+        requests: Vec<Request>,
+        wanted: &Wanted,
+    ) -> Option<View> {
+        Some(board(machine)?.debug(requests, wanted))
+    }
+
+    fn runs(&self, language: Language) -> bool {
+        language == Language::Mecc
+    }
+
+    fn run_program(&self, machine: &mut dyn Machine, _unit: usize, program: Arc<Program>) {
+        if let Some(board) = board(machine) {
+            board.board_mut().load(program);
+            board.board_mut().start();
+        }
+    }
+}
+
+fn board(machine: &mut dyn Machine) -> Option<&mut DrivenMotorvator> {
+    let machine: &mut dyn Any = machine;
+    machine.downcast_mut()
 }

@@ -8,6 +8,7 @@ use brushwork_plant::bridge::BridgeOutput;
 use brushwork_plant::machine::{Machine, StreamIndex};
 use brushwork_plant::presets::{Preset, world_of};
 use brushwork_plant::world::{PinState, World, WorldAction, WorldView};
+use brushwork_script::debug::{Request, View, Wanted};
 use std::time::Duration;
 
 /// What the motors and the board take of each other's doing is looked at so often.
@@ -23,6 +24,8 @@ pub struct DrivenMotorvator {
     /// Those of the two steppers, which take the place of two motors each.
     rotors: [Rotor; 2],
     has_power: bool,
+    /// How long board and worlds stood still, held by the debugger, while time went on for the line.
+    frozen_for: Duration,
     /// The stream that stands for the one wire there is: the one that was last written to.
     wire: StreamIndex,
 }
@@ -37,7 +40,14 @@ impl DrivenMotorvator {
         let second = if seed == 0 { 0 } else { seed.wrapping_add(1).max(1) };
         let worlds = [World::new(&params, seed)?, World::new(&params, second)?];
         let rotors = [Rotor::new(RotorParams::default()); 2];
-        Ok(Self { board, worlds, rotors, has_power: true, wire: StreamIndex::Usb })
+        Ok(Self {
+            board,
+            worlds,
+            rotors,
+            has_power: true,
+            frozen_for: Duration::ZERO,
+            wire: StreamIndex::Usb,
+        })
     }
 
     /// The board alone.
@@ -56,6 +66,14 @@ impl DrivenMotorvator {
     pub fn lost_steps(&self) -> [i64; 2] {
         let fields = self.board.steps();
         std::array::from_fn(|index| self.rotors[index].lost(fields[index]))
+    }
+
+    /// Asks the debugger of the board's program for things, and looks at it.
+    pub fn debug(&mut self, requests: Vec<Request>, wanted: &Wanted) -> View {
+        match self.has_power {
+            true => self.board.debug(requests, wanted),
+            false => self.board.debug_without_power(requests),
+        }
     }
 
     fn step(&mut self, to: Duration) {
@@ -88,7 +106,7 @@ impl DrivenMotorvator {
 
 impl Machine for DrivenMotorvator {
     fn now(&self) -> Duration {
-        self.board.now()
+        self.board.now() + self.frozen_for
     }
 
     fn receive(&mut self, stream: StreamIndex, bytes: &[u8]) {
@@ -100,12 +118,16 @@ impl Machine for DrivenMotorvator {
 
     fn advance(&mut self, to: Duration) {
         while self.now() < to {
-            self.step((self.now() + STEP).min(to));
+            if self.has_power && self.board.is_frozen() {
+                self.frozen_for += to - self.now();
+            } else {
+                self.step((self.now() + STEP).min(to) - self.frozen_for);
+            }
         }
     }
 
     fn next_output_at(&self) -> Option<Duration> {
-        self.board.next_output_at()
+        self.board.next_output_at().map(|at| at + self.frozen_for)
     }
 
     fn take_output(&mut self, stream: StreamIndex) -> Option<Vec<u8>> {
@@ -132,7 +154,9 @@ impl Machine for DrivenMotorvator {
     }
 
     fn views(&self) -> Vec<WorldView> {
-        self.worlds.iter().map(|world| world.view(self.now())).collect()
+        let script = self.has_power.then(|| self.board.script_view());
+        let view = |world: &World| WorldView { script: script.clone(), ..world.view(self.now()) };
+        self.worlds.iter().map(view).collect()
     }
 
     fn plugged(&self) -> bool {

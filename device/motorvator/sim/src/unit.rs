@@ -16,10 +16,10 @@ use std::time::Duration;
 /// A simulated MotorVator V3.
 #[derive(Clone, Debug, Default)]
 pub struct Motorvator {
-    hardware: Hardware,
-    program: Option<Arc<Program>>,
-    machine: Option<Machine>,
-    debugger: Debugger,
+    pub(super) hardware: Hardware,
+    pub(super) program: Option<Arc<Program>>,
+    pub(super) machine: Option<Machine>,
+    pub(super) debugger: Debugger,
     lines: LineReader,
     /// What leaves by itself, with its time: the command line's words. Frames of a program leave when they are out.
     output: VecDeque<(Duration, Vec<u8>)>,
@@ -64,8 +64,8 @@ impl Motorvator {
     }
 
     /// Puts another program into its memory; one that runs goes on.
-    pub fn load(&mut self, program: Program) {
-        self.program = Some(Arc::new(program));
+    pub fn load(&mut self, program: Arc<Program>) {
+        self.program = Some(program);
     }
 
     /// Begins the program from the start, as `G` does.
@@ -160,7 +160,8 @@ impl Motorvator {
     pub fn power_up(&mut self) {
         let Hardware { now, is_traced, bits_per_second, .. } = self.hardware;
         let program = self.program.take();
-        *self = Self { program, ..Self::default() };
+        let debugger = std::mem::take(&mut self.debugger);
+        *self = Self { program, debugger, ..Self::default() };
         self.hardware.now = now;
         self.hardware.is_traced = is_traced;
         self.hardware.bits_per_second = bits_per_second;

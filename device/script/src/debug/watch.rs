@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// Instructions that an expression may take; it has no loops, so this is never reached by what the compiler made.
 const MOST: u32 = 100_000;
 
-/// An expression in the scope of a program. Made by [`crate::mcl::Names::watch`].
+/// An expression in the scope of a program. Made by [`super::Names::watch`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Watch {
     /// As it was typed.
@@ -22,7 +22,7 @@ pub struct Watch {
     pub(crate) array: Option<Array>,
 }
 
-/// A place with the value it is to get. Made by [`crate::mcl::Names::setting`].
+/// A place with the value it is to get. Made by [`super::Names::setting`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setting {
     /// The place, as it was typed.
@@ -35,6 +35,13 @@ pub struct Setting {
 }
 
 impl Watch {
+    /// An expression of these instructions, at whose end its value is on the stack.
+    pub(crate) fn of(text: &str, ops: Vec<Op>, kind: Type, shown_as: VarType, array: Option<Array>) -> Self {
+        let lines = vec![0; ops.len()];
+        let program = Arc::new(Program { ops, lines, ..Program::default() });
+        Self { text: text.to_owned(), program, kind, shown_as, array }
+    }
+
     /// What it is now.
     ///
     /// # Errors
@@ -64,6 +71,11 @@ impl Watch {
 }
 
 impl Setting {
+    /// A place that these instructions set to what is on the stack.
+    pub(crate) fn of(place: &str, value: Watch, kind: VarType, ops: Vec<Op>) -> Self {
+        Self { place: place.to_owned(), value, kind, ops: ops.into(), is_pattern: false }
+    }
+
     /// Sets the place.
     ///
     /// # Errors

@@ -14,8 +14,10 @@ pub mod lexer;
 mod lower;
 mod parser;
 pub mod reference;
+mod watch;
 pub mod words;
 
 pub use board::{DIRECTIONS, FRAME_BYTES, TICKS_PER_SECOND};
 pub use lower::{Compiled, compile};
 pub use parser::{Parsed, parse};
+pub use watch::Names;

@@ -3,6 +3,7 @@
 mod bounds;
 mod messages;
 mod mutations;
+mod watch;
 
 use brushwork_script::board::Board;
 use brushwork_script::mcl::ast::Motion;

@@ -4,6 +4,9 @@ use brushwork_link::FamilyRef;
 use brushwork_link::device::{Addresses, ArmScope, Channel, Drive, DriveCommand, Identity};
 use brushwork_motorvator_client::channels::CHANNELS;
 use brushwork_motorvator_client::{Half, MOTORVATOR, MotorvatorFacts};
+use brushwork_motorvator_wire::host::LIBRARY;
+use brushwork_script::mecc::compile;
+use brushwork_script::program::Program;
 use brushwork_values::Motor;
 
 use super::MotorvatorConnection;
@@ -27,7 +30,14 @@ impl Family for Motorvator {
     }
 
     fn screens(&self, _identity: Option<&Identity>, _known: Known<'_>) -> Vec<Screen> {
-        vec![Screen::DeviceStatus, Screen::GeneralSettings, Screen::Pwm, Screen::Position, Screen::Terminal]
+        vec![
+            Screen::DeviceStatus,
+            Screen::GeneralSettings,
+            Screen::Pwm,
+            Screen::Position,
+            Screen::MclEditor,
+            Screen::Terminal,
+        ]
     }
 
     #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
@@ -36,9 +46,14 @@ impl Family for Motorvator {
             Screen::GeneralSettings => "Stepper Settings",
             Screen::Pwm => "Motors",
             Screen::Position => "Stepper",
+            Screen::MclEditor => "Program",
             Screen::Terminal => "Terminal",
             other => other.title(),
         }
+    }
+
+    fn library(&self) -> Option<Program> {
+        compile(LIBRARY).program
     }
 
     fn figures(&self) -> &'static [Figures] {

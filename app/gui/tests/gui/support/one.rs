@@ -8,7 +8,7 @@ use std::time::Duration;
 use brushwork_core::keep::{Keeping, Store};
 use brushwork_core::session::SessionError;
 use brushwork_gui::App;
-use brushwork_gui::parts::{OpenLink, Opener, Parts, PortSource};
+use brushwork_gui::parts::{OpenLink, Opener, Parts, PortSource, SimulatedWorld};
 use brushwork_gui::screens::face::Window;
 use brushwork_link::device::{Addresses, DeviceLoop, DeviceOptions};
 use brushwork_link::transport::{ConnectTarget, PortInfo};
@@ -40,6 +40,7 @@ struct OneOpener<M: Machine + Send + 'static> {
     line: Line<M>,
     slot: Slot,
     family: FamilyChoice,
+    world: Option<Arc<dyn SimulatedWorld>>,
 }
 
 impl<M: Machine + Send + 'static> Opener for OneOpener<M> {
@@ -51,7 +52,9 @@ impl<M: Machine + Send + 'static> Opener for OneOpener<M> {
         let (device_loop, device) = DeviceLoop::new(transport, Arc::new(gate.clone()), options);
         *self.slot.borrow_mut() = Some(Lockstep::new(gate, device_loop));
         let (sender, receiver) = bounded(1);
-        sender.send(Ok(OpenLink { device, bus: None, world: None })).expect("the receiver is here");
+        sender
+            .send(Ok(OpenLink { device, bus: None, world: self.world.clone() }))
+            .expect("the receiver is here");
         receiver
     }
 }
@@ -71,12 +74,24 @@ impl<M: Machine + Send + 'static> One<M> {
         machine: M,
         target: &'static str,
     ) -> Self {
+        Self::with_world(folder, (driver, window), machine, target, |_| None)
+    }
+
+    /// The same, where the world around the machine can be seen.
+    pub fn with_world(
+        folder: &tempfile::TempDir,
+        (driver, window): (&'static dyn Driver, &'static dyn Window),
+        machine: M,
+        target: &'static str,
+        world: impl FnOnce(Line<M>) -> Option<Arc<dyn SimulatedWorld>>,
+    ) -> Self {
         brushwork_link::install(&[driver]);
         brushwork_gui::install(&[window]);
         let line = Line::of(machine, StreamIndex::Usb, target);
         let slot = Slot::default();
         let family = FamilyChoice::of(driver.family());
-        let opener = Box::new(OneOpener { line: line.clone(), slot: slot.clone(), family });
+        let world = world(line.clone());
+        let opener = Box::new(OneOpener { line: line.clone(), slot: slot.clone(), family, world });
         let keeping = Keeping::new(Store::at(folder.path()));
         let mut parts = Some(Parts { ports: Box::new(NoPorts), opener, keeping });
         let harness = HarnessBuilder::default()

@@ -4,6 +4,7 @@ use brushwork_motorvator_sim::{DrivenMotorvator, Motorvator};
 use brushwork_plant::machine::{Machine, StreamIndex};
 use brushwork_plant::presets::presets;
 use brushwork_plant::world::{PinSignal, WorldAction};
+use brushwork_script::debug::{Breakpoint, Request, Wanted};
 use brushwork_script::mecc::compile;
 use std::time::Duration;
 
@@ -99,4 +100,27 @@ fn waits_that_are_too_short_lose_steps_and_a_ramp_saves_them() {
     let reached = (1..20).find(|least| lost(*least, 20, 50) == 0).expect("some wait is long enough");
     let started = (1..=20).find(|wait| lost(*wait, *wait, 50) == 0).expect("some wait is long enough");
     assert!(reached <= started, "{reached} {started}");
+}
+
+#[test]
+fn a_frozen_board_stands_still_while_the_line_goes_on_and_goes_on_where_it_stood() {
+    let mut machine = driven(DRIVE);
+    let attached = vec![Request::Attach(true), Request::FreezeWorld(true)];
+    machine.debug(attached, &Wanted::default());
+    machine.receive(StreamIndex::Usb, b"G\r");
+    machine.debug(vec![Request::Breakpoints(vec![Breakpoint::at(5)])], &Wanted::default());
+    seconds(&mut machine, 0.5);
+    let view = machine.debug(Vec::new(), &Wanted::default());
+    assert!(view.is_paused, "{view:?}");
+    let (before, frozen_at) = (speeds(&machine), view.now);
+    seconds(&mut machine, 3.0);
+    let view = machine.debug(Vec::new(), &Wanted::default());
+    assert_eq!((speeds(&machine), view.now), (before, frozen_at), "motors and clock stand");
+    assert!(machine.now() >= Duration::from_secs(3), "the line's time goes on");
+    machine.debug(vec![Request::Continue], &Wanted::default());
+    seconds(&mut machine, 1.0);
+    assert!(speeds(&machine)[0] > 1.0);
+    // Two seconds of its own time after the start it stops the motors.
+    seconds(&mut machine, 1.5);
+    assert_eq!(machine.board().motors(), [0; 4]);
 }

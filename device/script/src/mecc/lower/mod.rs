@@ -10,7 +10,7 @@ mod scope;
 mod statement;
 mod warnings;
 
-use super::ast::{Item, Kind, Name, Routine, RoutineKind, Statement, StatementKind, Variable};
+use super::ast::{Expr, Item, Kind, Name, Routine, RoutineKind, Statement, StatementKind, Variable};
 use super::board::FRAME_BYTES;
 use super::codes;
 use super::parser::{Parsed, parse};
@@ -22,7 +22,7 @@ use crate::op::{Cell, Op};
 use crate::program::{Program, limits};
 use crate::text::{Lines, Span};
 use facts::Facts;
-use scope::{Function, Meaning, Names, Symbol};
+use scope::{Function, Meaning, Symbol, Symbols};
 use std::sync::Arc;
 
 /// Parameters of a function.
@@ -64,6 +64,15 @@ pub fn compile(text: &str) -> Compiled {
     lowering.finish()
 }
 
+/// The instructions of an expression in the scope of a program, and what is wrong with it. `text` has both.
+pub(super) fn lower_value(text: &str, parsed: Parsed, value: &Expr) -> (Vec<Op>, Diagnostics) {
+    let mut lowering = Lowering::new(text, parsed.diagnostics);
+    lowering.collect(&parsed.items);
+    let before = lowering.ops.len();
+    lowering.expression(value);
+    (lowering.ops.split_off(before), lowering.diagnostics)
+}
+
 /// An instruction that waits for the first instruction of a routine.
 struct Patch {
     op: usize,
@@ -79,8 +88,8 @@ struct Lowering<'a> {
     /// Instructions beyond those that a program may have.
     surplus: usize,
     diagnostics: Diagnostics,
-    globals: Names,
-    locals: Names,
+    globals: Symbols,
+    locals: Symbols,
     /// Bytes of globals, and of everything so far.
     global_bytes: u32,
     ram_bytes: u64,
@@ -110,8 +119,8 @@ impl<'a> Lowering<'a> {
             lines: Vec::new(),
             surplus: 0,
             diagnostics,
-            globals: Names::default(),
-            locals: Names::default(),
+            globals: Symbols::default(),
+            locals: Symbols::default(),
             global_bytes: 0,
             ram_bytes: 0,
             initial: Vec::new(),

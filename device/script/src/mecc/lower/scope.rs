@@ -45,7 +45,7 @@ pub struct Symbol {
 }
 
 /// Names of a program, or of one routine of it.
-pub type Names = HashMap<Arc<str>, Symbol>;
+pub type Symbols = HashMap<Arc<str>, Symbol>;
 
 impl Meaning {
     /// "a variable", for messages.
