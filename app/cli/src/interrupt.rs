@@ -11,6 +11,7 @@ use brushwork_link::exchange::Interruption;
 use crossbeam_channel::{RecvTimeoutError, bounded};
 
 use super::exit::Exit;
+use super::output;
 use crate::messages::CliLinkMessage;
 
 /// The exit code of work that something broke into: a signal's own only if a signal was the reason.
@@ -63,9 +64,12 @@ impl Interrupt {
         ctrlc::set_handler(move || {
             own.raise();
             std::thread::sleep(GRACE);
-            if !own.holds_line.load(Ordering::SeqCst) {
-                std::process::exit(Exit::Interrupted as i32);
+            // Nor can a write to a pipe that is full be called off. Whoever is held by it has renewed no motion for as long, so that the dead-man
+            // has stopped the motors; the guardian stops them again.
+            while own.holds_line.load(Ordering::SeqCst) && output::held_for() < GRACE {
+                std::thread::sleep(LOOK);
             }
+            std::process::exit(Exit::Interrupted as i32);
         })?;
         Ok(interrupt)
     }

@@ -2,6 +2,9 @@
 
 use std::fmt::Display;
 use std::io::{self, Write};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
@@ -33,7 +36,7 @@ impl Output {
     /// Standard output, flushed at every line.
     #[must_use]
     pub fn stdout() -> Self {
-        Self { writer: Box::new(io::stdout()), kept: None }
+        Self { writer: Box::new(Watched(io::stdout())), kept: None }
     }
 
     /// A sink of the caller's.
@@ -103,9 +106,49 @@ impl Output {
     }
 }
 
+/// Since when a line is being written that nobody takes, in ms of [`clock_ms`]; 0 while none is.
+static WRITES_SINCE_MS: AtomicU64 = AtomicU64::new(0);
+
+/// How long what is being written now has not been taken, as where a pipe is full.
+pub fn held_for() -> Duration {
+    match WRITES_SINCE_MS.load(Ordering::SeqCst) {
+        0 => Duration::ZERO,
+        since_ms => Duration::from_millis(clock_ms().saturating_sub(since_ms)),
+    }
+}
+
+/// Never 0.
+fn clock_ms() -> u64 {
+    static BEGUN: OnceLock<Instant> = OnceLock::new();
+    let passed = BEGUN.get_or_init(Instant::now).elapsed().as_millis();
+    u64::try_from(passed).unwrap_or(u64::MAX).saturating_add(1)
+}
+
+/// A stream of the process, whose reader may take nothing for as long as it likes.
+struct Watched<W>(W);
+
+impl<W: Write> Watched<W> {
+    fn watched<T>(&mut self, write: impl FnOnce(&mut W) -> T) -> T {
+        WRITES_SINCE_MS.store(clock_ms(), Ordering::SeqCst);
+        let written = write(&mut self.0);
+        WRITES_SINCE_MS.store(0, Ordering::SeqCst);
+        written
+    }
+}
+
+impl<W: Write> Write for Watched<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.watched(|writer| writer.write(bytes))
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.watched(Write::flush)
+    }
+}
+
 /// Says something to the person at the terminal; a closed standard error is nobody to tell.
 pub fn say(text: impl Display) {
-    let _ = writeln!(io::stderr(), "{text}");
+    let _ = writeln!(Watched(io::stderr()), "{text}");
 }
 
 fn padded<'a>(cells: impl Iterator<Item = &'a str>, widths: &[usize]) -> String {

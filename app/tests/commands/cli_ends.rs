@@ -5,11 +5,13 @@ use std::fs;
 use std::net::TcpListener;
 use std::os::unix::process::ExitStatusExt as _;
 use std::path::Path;
+use std::process::Stdio;
 use std::time::{Duration, Instant};
 
 use crate::cli::{LIMIT, name, program};
 use brushwork_child::Program;
 use rustix::fs::{CWD, FileType, Mode, mknodat};
+use rustix::process::{Pid, Signal, kill_process};
 
 /// How long a command may take to end.
 const ENDS_WITHIN: Duration = Duration::from_millis(500);
@@ -107,4 +109,47 @@ fn ctrl_c_and_sigterm_end_every_command_that_waits_within_half_a_second() {
         }
     }
     assert!(late.is_empty(), "{late:#?}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_command_whose_output_nobody_takes_ends_all_the_same() {
+    let ended = |arguments: &[&str]| {
+        let (reader, writer) = std::io::pipe().expect("there are pipes");
+        let mut running = program();
+        let mut running =
+            running.args(arguments).stdout(writer).stderr(Stdio::null()).spawn().expect("it starts");
+        let number = running.id();
+        let waits = || {
+            fs::read_to_string(format!("/proc/{number}/wchan"))
+                .is_ok_and(|place| place.contains("pipe_write"))
+        };
+        let begun_at = Instant::now();
+        while !waits() {
+            assert!(begun_at.elapsed() < LIMIT, "{arguments:?} fills no pipe");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        let asked_at = Instant::now();
+        let own = Pid::from_raw(i32::try_from(number).expect("a process number")).expect("not 0");
+        kill_process(own, Signal::TERM).expect("it runs");
+        let mut exit = None;
+        while exit.is_none() && asked_at.elapsed() < 4 * ENDS_WITHIN {
+            std::thread::sleep(Duration::from_millis(2));
+            exit = running.try_wait().expect("it is ours");
+        }
+        let took = asked_at.elapsed();
+        let _ = running.kill();
+        let _ = running.wait();
+        drop(reader);
+        (took, exit.and_then(|exit| exit.code()))
+    };
+    for arguments in [
+        &["status", "--watch", "--interval", "0.02", "--json", "--connect", "sim:mcp266"][..],
+        &["protocol", "--json"],
+        &["drive", "--duty", "20", "--for", "600", "--json", "--connect", "sim:mcp266"],
+    ] {
+        let tries: Vec<_> = (0..TRIES).map(|_| ended(arguments)).collect();
+        let best = tries.iter().filter(|(_, exit)| *exit == Some(INTERRUPTED)).map(|(took, _)| *took).min();
+        assert!(best.is_some_and(|took| took <= ENDS_WITHIN), "{arguments:?}: {tries:?}");
+    }
 }
