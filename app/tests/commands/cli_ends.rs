@@ -2,6 +2,7 @@
 #![cfg(unix)]
 
 use std::fs;
+use std::io::Write as _;
 use std::net::TcpListener;
 use std::os::unix::process::ExitStatusExt as _;
 use std::path::Path;
@@ -9,9 +10,8 @@ use std::process::Stdio;
 use std::time::{Duration, Instant};
 
 use crate::cli::{LIMIT, name, program};
-use brushwork_child::Program;
-use rustix::fs::{CWD, FileType, Mode, mknodat};
-use rustix::process::{Pid, Signal, kill_process};
+use brushwork_child::{Child, Program};
+use rustix::fs::{CWD, FileType, Mode, OFlags, fcntl_setfl, mknodat};
 
 /// How long a command may take to end.
 const ENDS_WITHIN: Duration = Duration::from_millis(500);
@@ -115,10 +115,14 @@ fn ctrl_c_and_sigterm_end_every_command_that_waits_within_half_a_second() {
 #[test]
 fn a_command_whose_output_nobody_takes_ends_all_the_same() {
     let ended = |arguments: &[&str]| {
-        let (reader, writer) = std::io::pipe().expect("there are pipes");
-        let mut running = program();
-        let mut running =
-            running.args(arguments).stdout(writer).stderr(Stdio::null()).spawn().expect("it starts");
+        let (reader, mut writer) = std::io::pipe().expect("there are pipes");
+        fcntl_setfl(&writer, OFlags::NONBLOCK).expect("it is ours");
+        while writer.write(&[b' '; 1024]).is_ok() {}
+        while writer.write(b" ").is_ok() {}
+        fcntl_setfl(&writer, OFlags::empty()).expect("it is ours");
+        let mut command = program();
+        command.args(arguments);
+        let mut running = Child::spawn(&command, [Stdio::null(), writer.into(), Stdio::null()]);
         let number = running.id();
         let waits = || {
             fs::read_to_string(format!("/proc/{number}/wchan"))
@@ -130,18 +134,14 @@ fn a_command_whose_output_nobody_takes_ends_all_the_same() {
             std::thread::sleep(Duration::from_millis(5));
         }
         let asked_at = Instant::now();
-        let own = Pid::from_raw(i32::try_from(number).expect("a process number")).expect("not 0");
-        kill_process(own, Signal::TERM).expect("it runs");
-        let mut exit = None;
-        while exit.is_none() && asked_at.elapsed() < 4 * ENDS_WITHIN {
+        running.signal("TERM");
+        while running.is_running() && asked_at.elapsed() < 4 * ENDS_WITHIN {
             std::thread::sleep(Duration::from_millis(2));
-            exit = running.try_wait().expect("it is ours");
         }
         let took = asked_at.elapsed();
-        let _ = running.kill();
-        let _ = running.wait();
+        let exit = if running.is_running() { None } else { running.finish(LIMIT).code() };
         drop(reader);
-        (took, exit.and_then(|exit| exit.code()))
+        (took, exit)
     };
     for arguments in [
         &["status", "--watch", "--interval", "0.02", "--json", "--connect", "sim:mcp266"][..],
