@@ -12,7 +12,7 @@ use brushwork_link::device::DisarmReason;
 use brushwork_link::{ArmScope, Drive, DriveCommand, Event, Identity, PollRate, Request};
 use serde_json::json;
 
-use super::addresses::{self, Line};
+use super::addresses::Line;
 use super::args::DriveArgs;
 use super::client::{arm_all, ask, event_of};
 use super::joined::{self, JoinedLine};
@@ -29,6 +29,12 @@ const PRINT_INTERVAL: Duration = Duration::from_millis(100);
 /// Connects, arms, drives, stops. Several controllers, also on several lines, are driven together: all of them or none.
 pub fn run(args: &DriveArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let lines = joined::open(&args.connect, PollRate::Every(SWEEP_INTERVAL), interrupt)?;
+    for line in &lines {
+        if let Some(addresses) = line.silent() {
+            let place = line.place.clone();
+            return Err(Exit::NoLink.saying(CliUnitsMessage::NotAllThere { addresses, place }));
+        }
+    }
     let command = command(args, &lines, interrupt)?;
     let drive = match args.motor.motors() {
         [motor] => Drive::one(*motor, command),
@@ -153,7 +159,7 @@ impl<'a> Run<'a> {
             line.units.iter().map(move |identity| Driven {
                 line: index,
                 identity,
-                name: several.then(|| format!("{} on {}", addresses::name(identity.address), line.place)),
+                name: several.then(|| line.name_of(identity)),
                 readings: Readings::default(),
                 check: MotionCheck::default(),
                 responses: Response::of(&drive),
@@ -201,7 +207,7 @@ impl<'a> Run<'a> {
             }
             say(failure.to_string());
         }
-        let address = address_of(event);
+        let address = event.address();
         for unit in self.units.iter_mut().filter(|unit| unit.line == line) {
             if address.is_some_and(|address| address != unit.identity.address) {
                 continue;
@@ -267,18 +273,5 @@ impl Driven<'_> {
             Some(unit) => say(CliUnitsMessage::Of { unit: unit.clone(), sentence: sentence.to_string() }),
             None => say(sentence),
         }
-    }
-}
-
-/// The one unit that an event is of, where it is of one.
-#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
-fn address_of(event: &Event) -> Option<u8> {
-    match event {
-        Event::Sample(sample) => Some(sample.address),
-        Event::Status(status) => Some(status.address),
-        Event::Driven { address, .. }
-        | Event::Selected { address, .. }
-        | Event::Capabilities { address, .. } => Some(*address),
-        _ => None,
     }
 }

@@ -2,9 +2,8 @@
 
 use brushwork_link::{Identity, PollRate, Request};
 
-use super::addresses::{AddressList, Line, in_words};
+use super::addresses::{AddressList, in_words, name};
 use super::client::ask;
-use super::messages::CliUnitsMessage;
 use super::{Client, ConnectArgs, Exit, Interrupt};
 
 /// A line, and those of its controllers that act together. The link's selected one comes first.
@@ -15,9 +14,11 @@ pub struct JoinedLine {
     pub place: String,
     /// Who they are.
     pub units: Vec<Identity>,
+    /// The addresses that were named and at which nobody answers.
+    pub missing: Vec<u8>,
 }
 
-/// Opens all lines that are named. Whoever is named and is not there keeps all of them from acting.
+/// Opens all lines that are named.
 ///
 /// # Errors
 /// Says on standard error what went wrong and gives the exit code.
@@ -25,32 +26,34 @@ pub fn open(args: &ConnectArgs, poll: PollRate, interrupt: &Interrupt) -> Result
     let line = |place: &String| {
         let own = ConnectArgs { connect: vec![place.clone()], ..args.clone() };
         let (client, units) = match &args.address {
-            Some(list @ (AddressList::These(_) | AddressList::All)) => {
-                let line = Line { connect: place, address: Some(list), family: args.family };
-                let (client, units) = Client::connect_all(&own, poll, interrupt)?;
-                let is_there = |number: &u8| units.iter().any(|unit| unit.address == *number);
-                let missing: Vec<u8> =
-                    line.numbers().iter().copied().filter(|number| !is_there(number)).collect();
-                if !missing.is_empty() {
-                    let addresses = in_words(&missing);
-                    return Err(
-                        Exit::NoLink.saying(CliUnitsMessage::NotAllThere { addresses, place: place.clone() })
-                    );
-                }
-                (client, units)
-            }
+            Some(AddressList::These(_) | AddressList::All) => Client::connect_all(&own, poll, interrupt)?,
             None | Some(AddressList::One(_)) => {
                 let client = Client::connect(&own, poll, interrupt)?;
                 let units = vec![client.identity.clone()];
                 (client, units)
             }
         };
-        Ok(JoinedLine { client, place: place.clone(), units })
+        let named = args.address.as_ref().map_or(&[][..], AddressList::numbers);
+        let is_there = |number: &u8| {
+            units.iter().any(|unit| unit.address == *number || unit.also_answers.contains(number))
+        };
+        let missing = named.iter().copied().filter(|number| !is_there(number)).collect();
+        Ok(JoinedLine { client, place: place.clone(), units, missing })
     };
     args.connect.iter().map(line).collect()
 }
 
 impl JoinedLine {
+    /// What a unit of it is called where there are several.
+    pub fn name_of(&self, unit: &Identity) -> String {
+        format!("{} on {}", name(unit.address), self.place)
+    }
+
+    /// The addresses at which nobody answers, as a sentence has them; `None` where all do.
+    pub fn silent(&self) -> Option<String> {
+        (!self.missing.is_empty()).then(|| in_words(&self.missing))
+    }
+
     /// Has its units armed, driven and read together from now on.
     ///
     /// # Errors

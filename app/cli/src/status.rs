@@ -13,8 +13,10 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::args::StatusArgs;
-use super::client::ask;
+use super::client::{ask, event_of};
 use super::family::{self, Judged, Said};
+use super::joined;
+use super::messages::CliUnitsMessage;
 use super::{Client, Exit, Interrupt, Output, OutputError, Readings, say};
 
 /// How long the slow signals may take to come round.
@@ -32,6 +34,9 @@ struct IndicatorState {
 
 /// Connects, reads and prints, once or until interrupted.
 pub fn run(args: &StatusArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    if args.watch && args.connect.is_several() {
+        return watch_several(args, out, interrupt);
+    }
     let client = Client::connect(&args.connect, PollRate::DEFAULT, interrupt)?;
     if args.learn_anew {
         ask(client.device(), Request::LearnAnew)?;
@@ -58,6 +63,49 @@ pub fn run(args: &StatusArgs, out: &mut Output, interrupt: &Interrupt) -> Result
         if Instant::now() >= next {
             next += args.interval;
             print(args, &client.identity, &readings, out)?;
+        }
+    }
+}
+
+/// Prints a line for each of several controllers, again and again until interrupted. Each line's units are read in one sweep.
+fn watch_several(args: &StatusArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+    let lines = joined::open(&args.connect, PollRate::DEFAULT, interrupt)?;
+    let mut units = Vec::new();
+    for (index, line) in lines.iter().enumerate() {
+        if let Some(addresses) = line.silent() {
+            say(CliUnitsMessage::Silent { addresses, place: line.place.clone() });
+        }
+        line.join()?;
+        units.extend(line.units.iter().map(|identity| (index, identity, Readings::default())));
+    }
+    let mut next = Instant::now() + args.interval;
+    loop {
+        for (index, line) in lines.iter().enumerate() {
+            let Some(event) = event_of(line.client.device(), lines.len(), interrupt)? else { continue };
+            if let Event::Failure(failure) = &event {
+                say(failure.to_string());
+            }
+            let of_unit = event.address();
+            let own = units.iter_mut().filter(|(line, unit, _)| {
+                *line == index && of_unit.is_none_or(|address| address == unit.address)
+            });
+            own.for_each(|(_, _, readings)| readings.take(&event));
+        }
+        if Instant::now() < next {
+            continue;
+        }
+        next += args.interval;
+        for (index, identity, readings) in &units {
+            let line = &lines[*index];
+            if args.json {
+                let mut object = json!({ "readings": readings.to_json(identity) });
+                object["connect"] = json!(line.place);
+                object["address"] = json!(identity.address);
+                object["status_word"] = json!(readings.status.map(|status| status.word));
+                out.json_line(&object)?;
+            } else {
+                out.line(format!("{}  {}", line.name_of(identity), line_of(readings, identity)))?;
+            }
         }
     }
 }

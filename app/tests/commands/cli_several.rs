@@ -1,6 +1,9 @@
 //! Several controllers at once: one line with five RoboClaws of a rover, two lines, and a chain of Motion Minds.
 
-use crate::cli::{DIFFERENT, DONE, NO_LINK, NOT_TAKEN, REFUSED, Run, Simulated, USAGE, name, program, run};
+use crate::cli::{
+    DIFFERENT, DONE, LIMIT, NO_LINK, NOT_TAKEN, REFUSED, Run, Simulated, USAGE, name, program, run,
+};
+use brushwork_child::Program;
 use serde_json::Value;
 
 fn rover(addresses: &str) -> Simulated {
@@ -187,6 +190,29 @@ fn boards_of_a_rover_are_driven_together_on_one_line_and_on_two_or_not_at_all() 
     assert_eq!(places, [other.port(), line.port()], "in the order in which they were named");
     let at_rest = brushwork(&line, &["status", "--address", "all", "--json"]).ended_with(DONE).json();
     assert_eq!(each(&at_rest, "/result/readings/m1_pwm"), [0.0; 3]);
+}
+
+#[test]
+fn several_boards_are_watched_with_a_line_for_each_and_the_silent_one_is_named() {
+    let line = rover("0x80-0x81");
+    let mut command = program();
+    command.args(["status", "--watch", "--interval", "0.2", "--json", "--address", "0x80-0x82"]);
+    let mut running = Program::spawn({
+        command.args(["--connect", &line.port()]);
+        command
+    });
+    let mut seen = Vec::new();
+    while seen.len() < 6 {
+        let text = running.next_line(LIMIT).expect("it goes on");
+        let object: Value = serde_json::from_str(&text).expect("JSON");
+        seen.push((object["address"].clone(), object["readings"]["m2_current"].is_number()));
+    }
+    running.signal("INT");
+    let ending = running.finish(LIMIT);
+    let addresses: Vec<_> = seen.iter().map(|(address, _)| address.clone()).collect();
+    assert_eq!(addresses, [0x80, 0x81, 0x80, 0x81, 0x80, 0x81]);
+    assert!(seen[4..].iter().all(|(_, is_read)| *is_read), "both are read: {seen:?}");
+    assert!(ending.stderr.join(" ").contains("Nobody answers at 0x82 on"), "{ending:?}");
 }
 
 #[test]

@@ -175,6 +175,37 @@ pub enum DisarmReason {
 }
 
 impl Event {
+    /// The one unit that it is of, where it is of one.
+    #[must_use]
+    pub fn address(&self) -> Option<u8> {
+        match self {
+            Self::Sample(sample) => Some(sample.address),
+            Self::Status(status) => Some(status.address),
+            Self::Connected(identity) => Some(identity.address),
+            Self::Selected { address, .. }
+            | Self::Armed { address, .. }
+            | Self::Driven { address, .. }
+            | Self::ProgramStarted { address }
+            | Self::Capabilities { address, .. } => Some(*address),
+            Self::Moved { .. }
+            | Self::Searching { .. }
+            | Self::Disarmed(_)
+            | Self::ArmRefused { .. }
+            | Self::Stopped(_)
+            | Self::Transacted { .. }
+            | Self::RawReply { .. }
+            | Self::LoaderEntered
+            | Self::JobStarted { .. }
+            | Self::JobProgress { .. }
+            | Self::JobEnded(_)
+            | Self::Link(_)
+            | Self::Traffic { .. }
+            | Self::Failure(_)
+            | Self::Lost(_)
+            | Self::Closed => None,
+        }
+    }
+
     /// The job that it is about.
     #[must_use]
     pub fn job(&self) -> Option<JobId> {
