@@ -26,8 +26,8 @@ use super::model::{Appearance, ConnectionId, Model};
 use super::parts::{Parts, SimulatedWorld};
 use super::remember::Memory;
 use super::screens::face;
-use super::tune::model::Afterwards;
 use super::{actions, keys, shell, theme};
+use crate::model::Afterwards;
 use crate::model::{Arming, Effect, Gravity, Owner, Screen, Sheet, Tab};
 
 mod debugging;

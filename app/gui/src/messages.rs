@@ -290,6 +290,7 @@ messages! {
 messages! {
     /// What is said of the traffic's file.
     pub enum TrafficMessage {
+        SavedOne { path: String } "Saved 1 transaction to {path}.",
         Saved { count: usize, path: String } "Saved {count} transactions to {path}.",
         NotSaved { path: String, error: String } "Could not save the traffic to {path}: {error}. Choose another folder or name.",
     }

@@ -4,8 +4,8 @@
 
 use super::App;
 use crate::messages::WindowStatusMessage;
+use crate::model::Afterwards;
 use crate::model::{ConnectionId, Gravity};
-use crate::tune::model::Afterwards;
 use brushwork_core::messages::EndedMessage;
 use brushwork_link::device::Request;
 use egui::{Context, ViewportCommand};
@@ -75,10 +75,10 @@ impl App {
         let Some(connection) = self.model.connection_mut(id).filter(|connection| connection.may_owe()) else {
             return false;
         };
-        let again = connection.tune.afterwards.replace(afterwards) == Some(afterwards);
+        let again = connection.afterwards.replace(afterwards) == Some(afterwards);
         // Another unit in mid-act would be given the gains of this one.
         if again && afterwards == Afterwards::Disconnect {
-            connection.tune.afterwards = None;
+            connection.afterwards = None;
             return false;
         }
         connection.tune.cancel(afterwards.why());
@@ -95,7 +95,7 @@ impl App {
         else {
             return;
         };
-        match connection.tune.afterwards.take() {
+        match connection.afterwards.take() {
             Some(Afterwards::Disconnect) => self.disconnect(id),
             Some(Afterwards::Select(address)) => {
                 self.request_of(id, Request::Select(address));

@@ -11,9 +11,9 @@ use crossbeam_channel::{TryRecvError, bounded};
 use egui::Context;
 
 use super::{App, OPENING_INTERVAL, waker};
+use crate::model::Afterwards;
 use crate::model::{Choice, Connection, ConnectionId, Effect, Gravity, LinkView, Phase, place_of};
 use crate::parts::OpenLink;
-use crate::tune::model::Afterwards;
 use crate::{family, links};
 
 impl App {

@@ -17,6 +17,7 @@ use brushwork_link::{
 use brushwork_plant::world::{ScriptRun, WorldView};
 use brushwork_values::Motor;
 
+use super::afterwards::Afterwards;
 use super::drawer::Drawers;
 use super::examination::ExaminationPanel;
 use super::generator::Generator;
@@ -76,6 +77,8 @@ pub struct Connection {
     pub qpps: QppsPanel,
     /// Guided tuning.
     pub tune: Tuning,
+    /// What waits until a run or an examination has put back what it changed.
+    pub afterwards: Option<Afterwards>,
     /// The examination of the unit that is looked at.
     pub examination: ExaminationPanel,
     /// How far the unit is on the guided path.
@@ -188,6 +191,7 @@ impl Connection {
             generator: Generator::default(),
             qpps: QppsPanel::default(),
             tune: Tuning::default(),
+            afterwards: None,
             examination: ExaminationPanel::default(),
             path: Path::default(),
             drawers: Drawers::default(),

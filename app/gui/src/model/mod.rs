@@ -5,6 +5,7 @@ use egui::ThemePreference;
 
 use super::mcl::Editor;
 
+mod afterwards;
 pub mod boards;
 pub mod canopen;
 pub mod channels;
@@ -42,6 +43,7 @@ pub mod watch;
 pub mod watched;
 pub mod world;
 
+pub use afterwards::Afterwards;
 pub use connection::{Connection, ConnectionId, Phase, place_of};
 use devices::Devices;
 use message::Messages;

@@ -123,6 +123,7 @@ fn saving_ui(ui: &mut Ui, model: &mut Model) {
         match dialog.answer() {
             FileAnswer::Chosen(path) => {
                 name = path.display().to_string();
+                traffic.asked_about = Some(name.clone());
                 traffic.dialog = None;
             }
             FileAnswer::None => traffic.dialog = None,

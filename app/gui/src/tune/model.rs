@@ -47,32 +47,6 @@ pub enum TuneAction {
     OpenReport(std::path::PathBuf),
 }
 
-/// What was asked for during a run and would cut it off from its controller: it follows when the run has put back what it changed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Afterwards {
-    Disconnect,
-    /// The unit at this address.
-    Select(u8),
-}
-
-impl Afterwards {
-    /// Why the run ends.
-    pub const fn why(self) -> EndedMessage {
-        match self {
-            Self::Disconnect => EndedMessage::LinkCloses,
-            Self::Select(_) => EndedMessage::OtherUnit,
-        }
-    }
-
-    /// What follows, as the beginning of a sentence.
-    pub const fn what(self) -> &'static str {
-        match self {
-            Self::Disconnect => "The link closes (ask again to close it at once)",
-            Self::Select(_) => "The other unit is shown",
-        }
-    }
-}
-
 /// How an axis is tuned.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
@@ -192,7 +166,6 @@ pub struct Tuning {
     pub view: View,
     /// Work with the settings that was asked for during a run: it waits until what the run changed is put back.
     pub waiting: Option<SettingsAction>,
-    pub afterwards: Option<Afterwards>,
     /// A path for a report, as it is typed.
     pub path: String,
     pub dialog: Option<Asked>,
@@ -211,7 +184,6 @@ impl Default for Tuning {
             calibrations: <[Calibration; 2]>::default(),
             view: View::default(),
             waiting: None,
-            afterwards: None,
             path: String::new(),
             dialog: None,
         }

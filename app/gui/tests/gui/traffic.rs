@@ -91,6 +91,15 @@ fn the_log_is_saved_to_a_file_and_a_failure_is_a_sentence() {
     let text = std::fs::read_to_string(&file).expect("it was saved");
     assert!(text.starts_with("time s\t") && text.lines().count() > 20, "{text}");
     assert!(text.contains("80 5A | ") || text.contains("80 4E | "), "{text}");
+    // A path that is typed replaces nothing; one that the desktop's dialog gave was asked about there.
+    std::fs::write(&file, "something else").expect("it is ours");
+    bench.press("Save log…");
+    bench.model().front.traffic.saving = Some(file.display().to_string());
+    bench.press("Save traffic");
+    assert!(bench.sees_part("Could not save the traffic to"));
+    bench.model().front.traffic.asked_about = Some(file.display().to_string());
+    bench.press("Save traffic");
+    assert!(std::fs::read_to_string(&file).expect("it is there").starts_with("time s\t"));
 }
 
 #[test]

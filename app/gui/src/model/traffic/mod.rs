@@ -10,7 +10,7 @@ pub use log::{Filter, Log, MOST, MOST_BYTES, Outcome, Transaction};
 use std::path::Path;
 
 use brushwork_link::device::Event;
-use brushwork_link::files::write_new_file;
+use brushwork_link::files::{replace_file, write_new_file};
 
 use crate::files::FileDialog;
 use crate::messages::TrafficMessage;
@@ -35,6 +35,8 @@ pub struct Traffic {
     pub kept: KeptCommand,
     /// The name that was typed for a file, while one is asked for.
     pub saving: Option<String>,
+    /// The name that the desktop's dialog gave, which has asked before another file is replaced.
+    pub asked_about: Option<String>,
     pub dialog: Option<FileDialog>,
 }
 
@@ -54,12 +56,14 @@ impl Traffic {
         self.kept.forget();
     }
 
-    /// Writes what the filter lets through to a new file; what became of it, as a sentence.
+    /// Writes what the filter lets through to a file, a new one unless the dialog has asked about it; what became of it, as a sentence.
     pub fn save(&self, path: &Path) -> Result<TrafficMessage, TrafficMessage> {
         let text = self.log.to_text();
         let lines = self.log.shown_len();
         let shown = path.display().to_string();
-        match write_new_file(path, text.as_bytes()) {
+        let write = if self.asked_about.as_ref() == Some(&shown) { replace_file } else { write_new_file };
+        match write(path, text.as_bytes()) {
+            Ok(()) if lines == 1 => Ok(TrafficMessage::SavedOne { path: shown }),
             Ok(()) => Ok(TrafficMessage::Saved { count: lines, path: shown }),
             Err(error) => Err(TrafficMessage::NotSaved { path: shown, error: error.to_string() }),
         }
