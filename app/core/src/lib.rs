@@ -6,6 +6,7 @@
 pub mod examine;
 pub mod guardian;
 pub mod keep;
+pub mod known_file;
 pub mod messages;
 pub mod motion;
 pub mod recording;

@@ -271,3 +271,14 @@ messages! {
         NotArmed "it could not be armed again with the time-out of a run, 200 ms of silence; where that is too short for the line, connect by USB or at 115200 bit/s, with no radio and no network on the way",
     }
 }
+
+messages! {
+    /// Why a file is not opened.
+    pub enum KnownFileMessage {
+        NoFile { path: String } "{path} is not opened: it is a folder, a device or a pipe, and no file.",
+        NotRead { path: String, error: String } "{path} is not opened: {error}. Check the path and your rights.",
+        TooLong { path: String, mebibytes: u64 } "{path} is not opened: it has more than {mebibytes} MiB, and no profile, report, script or firmware image is as long.",
+        OtherJson { path: String } "{path} is not opened: it holds neither the settings of a controller nor a tuning report.",
+        Unknown { path: String } "{path} is not opened: it is no profile, backup or tuning report (.json), no recording (.bwr, .csv), no script (.mcl, .mecc) and no firmware image (.bin).",
+    }
+}

@@ -32,6 +32,7 @@ use crate::model::{Arming, Effect, Gravity, Owner, Screen, Sheet, Tab};
 
 mod debugging;
 mod examining;
+mod files;
 mod leaving;
 mod linking;
 mod own;
@@ -116,6 +117,7 @@ impl App {
             self.stop();
         }
         self.update(&ctx);
+        self.take_files(&ctx);
         let mut commands = actions::shortcuts(&ctx, &mut self.model);
         shell::shell_ui(ui, &mut self.model, &mut commands);
         for command in commands {
@@ -322,7 +324,15 @@ impl App {
             Command::Tune(action) => self.tune(action),
             Command::OpenExamination => model.front.examination.open = true,
             Command::Examination(action) => self.examine(action),
-            Command::OpenFirmware => model.front.own.iter_mut().for_each(|own| own.open_firmware()),
+            Command::OpenFirmware => {
+                if let Err(why) = self.open_firmware(None) {
+                    self.model.messages.fail(why);
+                }
+            }
+            Command::OpenFile(path) => self.open_file(&path),
+            Command::ChooseFile => model.files.browse(),
+            Command::ListBackups => self.list_backups(),
+            Command::ShowStart => model.show_start(),
             Command::OpenSheet(sheet) => self.open_sheet(sheet),
             Command::ShowSettings(section) => {
                 self.show(Screen::GeneralSettings);

@@ -1,6 +1,7 @@
 //! What a person can ask of the window. Screens send commands; [`super::app::App`] applies them in one place.
 
 use brushwork_canopen::NodeId;
+use std::path::PathBuf;
 use std::rc::Rc;
 
 use brushwork_link::{ArmScope, PollRate, SettingsImage, Stream};
@@ -83,6 +84,14 @@ pub enum Command {
     PlainEdges(bool),
     /// Size of everything in the window, percent.
     Scale(u16),
+    /// Opens a file as what it is.
+    OpenFile(PathBuf),
+    /// Asks for a file to open.
+    ChooseFile,
+    /// Lists the backups of every controller, without one.
+    ListBackups,
+    /// Shows the start page in the place of what is left of a connection.
+    ShowStart,
     /// Opens the window for firmware updates.
     OpenFirmware,
     /// Opens the window that examines the controller.

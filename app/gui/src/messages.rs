@@ -288,6 +288,15 @@ messages! {
 }
 
 messages! {
+    /// Why a file has no place in the window.
+    pub enum OpenFileMessage {
+        TooMany { count: usize, most: usize } "{count} files were dropped; the first {most} of them were opened.",
+        NoSuchLoop { screen: &'static str } "The report is not opened: it belongs on {screen}, which the controller in front does not have as it is set. Disconnect to look at it.",
+        NoFirmware { why: &'static str } "The firmware image is not opened. {why}",
+    }
+}
+
+messages! {
     /// What is said of the traffic's file.
     pub enum TrafficMessage {
         SavedOne { path: String } "Saved 1 transaction to {path}.",

@@ -40,6 +40,8 @@ pub struct Remembered {
     pub screen: String,
     /// Connections, newest first.
     pub recent: Vec<String>,
+    /// Files that were opened, newest first.
+    pub recent_files: Vec<String>,
     pub left_width: f32,
     pub world_width: f32,
     /// What the graph has of the height of each screen whose bar was moved, by the screen's title.
@@ -75,6 +77,7 @@ impl Default for Remembered {
             scale_percent: 0,
             screen: String::new(),
             recent: Vec::new(),
+            recent_files: Vec::new(),
             left_width: 0.0,
             world_width: 0.0,
             graph_parts: BTreeMap::new(),
@@ -96,6 +99,7 @@ impl Remembered {
         self.scale_percent = model.appearance.scale_percent;
         model.screen.title().clone_into(&mut self.screen);
         self.recent = model.devices.recent.to_vec();
+        self.recent_files = model.files.recent.clone();
         self.left_width = model.layout.left_width.round();
         self.world_width = model.layout.world_width.round();
         let part = |screen: &Screen| Some((screen.title().to_owned(), model.layout.graph_part(*screen)?));
@@ -116,6 +120,7 @@ impl Remembered {
             model.turn_to(screen);
         }
         model.devices.set_recent(self.recent.clone());
+        model.files.set_recent(self.recent_files.clone());
         model.layout.set(self.left_width, self.world_width);
         for screen in Screen::ALL {
             model.layout.set_graph_part(screen, self.graph_parts.get(screen.title()).copied());
@@ -325,6 +330,7 @@ mod tests {
         model.appearance.set_scale(130);
         model.turn_to(Screen::Velocity);
         model.devices.remember("/dev/ttyACM0");
+        model.files.remember(Path::new("/home/me/axis.json"));
         model.layout.set(250.0, 300.0);
         model.layout.set_graph_part(Screen::Velocity, Some(0.75));
         let (mut memory, failure) = Memory::at(Some(path.clone()));
@@ -338,6 +344,7 @@ mod tests {
         assert_eq!(again.appearance, model.appearance);
         assert_eq!(again.screen, Screen::Velocity);
         assert_eq!(again.devices.recent, ["/dev/ttyACM0"]);
+        assert_eq!(again.files.recent, ["/home/me/axis.json"]);
         assert_eq!(again.layout, model.layout);
     }
 

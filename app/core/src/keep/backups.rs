@@ -12,7 +12,7 @@ use super::sequence;
 use super::store::{KeepError, Record, Store};
 use super::unit::{UnitId, profile_of};
 
-const FOLDER: &str = "backups";
+pub(super) const FOLDER: &str = "backups";
 /// Held while a backup is made; in the root of the store.
 const LOCK: &str = ".lock";
 /// Why a backup was made that belongs to no act.

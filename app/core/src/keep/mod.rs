@@ -11,6 +11,7 @@ pub mod folder;
 mod journals;
 mod loans;
 mod memory;
+mod notes;
 mod sequence;
 mod store;
 mod today;

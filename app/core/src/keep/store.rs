@@ -31,6 +31,8 @@ pub enum Record {
     Capabilities,
     /// What a stop may change for a while.
     Loan,
+    /// What people note of a unit.
+    Notes,
 }
 
 impl Record {
@@ -46,6 +48,7 @@ impl Record {
             Self::Update => "the note of the firmware update",
             Self::Capabilities => "the list of what the firmware answers",
             Self::Loan => "the note of what a stop may change",
+            Self::Notes => "your notes on the unit",
         }
     }
 
@@ -65,6 +68,7 @@ impl Record {
             Self::Update => "A controller that waits in its firmware loader would not be known for that",
             Self::Capabilities => "It is learned anew at the next connection",
             Self::Loan => "If this program died within a stop, nobody would offer to give that back",
+            Self::Notes => "What was typed stays in the window until it is closed",
         }
     }
 
@@ -89,6 +93,9 @@ impl Record {
             Self::Capabilities => "It is learned anew",
             Self::Loan => {
                 "So registers of this controller may still hold what a stop has changed for a while"
+            }
+            Self::Notes => {
+                "So what was noted is not shown, and is not replaced before something else is typed"
             }
         }
     }

@@ -62,6 +62,7 @@ impl App {
             front.lost = None;
             front.could_not_open = false;
             front.shows_start = false;
+            self.model.files.close();
             front.phase = Phase::Opening { target: text };
             let opening = self.parts.opener.open(target, self.model.devices.addresses());
             self.links.entry(front.id()).opening = Some(opening);

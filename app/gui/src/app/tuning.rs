@@ -175,7 +175,7 @@ impl App {
         self.write_ram_of(front.id(), wanted)
     }
 
-    fn open_report(&mut self, path: &std::path::Path) -> Result<(), Message> {
+    pub(super) fn open_report(&mut self, path: &std::path::Path) -> Result<(), Message> {
         let report = file::read(path)?;
         let which = files::loop_of(&report);
         let motor = if report.request.guard.motor == 1 { Motor::M2 } else { Motor::M1 };

@@ -2,6 +2,7 @@
 
 use std::any::Any;
 use std::fmt::Debug;
+use std::path::Path;
 use std::time::Duration;
 
 use brushwork_link::{Event, Failure, Message, Request, Sample};
@@ -59,6 +60,6 @@ pub trait Own: Any + Debug {
     /// Such a command was not sent.
     fn refused(&mut self, _id: u64, _why: Failure) {}
 
-    /// Shows the window for firmware updates.
-    fn open_firmware(&mut self) {}
+    /// Shows the window for firmware updates, with a file if one was named.
+    fn open_firmware(&mut self, _file: Option<&Path>) {}
 }

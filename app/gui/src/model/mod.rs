@@ -25,6 +25,7 @@ pub mod jobs;
 pub mod link;
 pub mod loop_settings;
 pub mod message;
+pub mod open_files;
 pub mod palette;
 pub mod path;
 mod path_steps;
@@ -86,6 +87,8 @@ pub struct Model {
     /// Open while there is one.
     pub palette: Option<Palette>,
     pub help: Help,
+    /// Files that are opened, and settings that are looked at without a controller.
+    pub files: open_files::OpenFiles,
     /// The window for connecting to a CANopen bus.
     pub canopen: canopen::CanOpenChoice,
     /// The MCL programs that are open; they belong to no link.
@@ -257,6 +260,12 @@ impl Model {
             }
         }
         self.others.retain(|connection| connection.id() != id);
+    }
+
+    /// Shows the start page in the place of what is left of a connection, or of a file.
+    pub fn show_start(&mut self) {
+        self.files.close();
+        self.front.shows_start = true;
     }
 
     /// Goes to a screen. Each screen that drives keeps its own choice of channels.

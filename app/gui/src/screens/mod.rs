@@ -23,6 +23,7 @@ mod position;
 mod progress;
 mod pwm;
 mod qpps;
+mod settings_file;
 mod split;
 mod start;
 pub(super) mod status;

@@ -3,14 +3,24 @@
 use egui::{Color32, CornerRadius, Frame, Margin, RichText, Role, Stroke, Ui, WidgetInfo};
 
 use super::graph_place::graph_place_ui;
-use super::{not_connected_text, nothing_ui, start, status};
+use super::{not_connected_text, nothing_ui, settings_file, start, status};
 use crate::command::{Command, Commands};
-use crate::model::{Connection, IndicatorState, Model, Phase, Screen};
+use crate::model::{Connection, IndicatorState, Model, Phase, Screen, Tab};
 use crate::theme::Palette;
+use crate::tune::{Loop, guide};
 
 /// The place of a screen that needs a controller.
 pub fn offline_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let is_closed = model.front.phase == Phase::Closed;
+    let shows_file = is_closed && !model.front.shows_start;
+    if shows_file && model.screen == Screen::GeneralSettings && settings_file::has_any(&model.files) {
+        return settings_file::settings_file_ui(ui, model, commands);
+    }
+    if let Some(which) = report(model).filter(|_| shows_file) {
+        band_ui(ui, model, commands);
+        ui.add_space(6.0);
+        return guide::found_ui(ui, model, which, commands);
+    }
     let has_record = has_record(&model.front, model.screen);
     if is_closed && (!has_record || model.front.shows_start) {
         return start::start_ui(ui, model, commands);
@@ -25,6 +35,13 @@ pub fn offline_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         return status::history_ui(ui, &mut model.front.history, height);
     }
     graph_place_ui(ui, model, commands);
+}
+
+/// The loop whose tuning runs are shown: those of the link that was, or one from a file.
+fn report(model: &Model) -> Option<Loop> {
+    let which = Loop::of(model.screen)?;
+    let is_open = model.front.open_tab(model.screen) == Some(Tab::Tune);
+    (is_open && model.front.tune.front(which).run().is_some()).then_some(which)
 }
 
 /// Whether there is something to see of what was: events, or the graph of a screen that drives.
@@ -69,7 +86,7 @@ fn band_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
                 }
             }
             if ui.button("Start page").on_hover_text("Ports, simulated controllers and files").clicked() {
-                model.front.shows_start = true;
+                model.show_start();
             }
             ui.label(
                 RichText::new("What was sampled stays here, and can be saved and exported.").small().weak(),

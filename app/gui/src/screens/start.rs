@@ -1,21 +1,25 @@
 //! The start page: what can be connected to and how, what can be tried without hardware, and what can be opened without a controller.
 
+use std::path::Path;
+
 use brushwork_link::PortInfo;
-use egui::{Align, Button, Frame, Layout, Margin, RichText, ScrollArea, Stroke, Ui};
+use egui::{Align, Button, Frame, Key, Layout, Margin, RichText, ScrollArea, Stroke, Ui, vec2};
 
 use crate::command::{Command, Commands};
 use crate::family::{self, Family};
 use crate::focus::{self, Region, region_ui};
-use crate::graph::files::OpenAs;
 use crate::model::devices::{Choice, described};
 use crate::model::{Model, Screen};
 use crate::theme::Palette;
 use crate::tune::sketches::{Sketch, sketch_ui};
 use crate::widgets::heading_ui;
+use crate::widgets::text_field::text_field_ui;
 
 /// Width from which two columns fit.
 const TWO_COLUMNS_FROM: f32 = 640.0;
-/// Recent connections that are offered here; the rest stand in the list at the left.
+/// Room for the button beside a path.
+const OPEN_WIDTH: f32 = 60.0;
+/// Recent connections and files that are offered here; the rest of the connections stand in the list at the left.
 const RECENT_SHOWN: usize = 4;
 
 pub fn start_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
@@ -147,10 +151,12 @@ fn recent_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
 fn files_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     heading_ui(ui, "Without a controller");
     ui.horizontal_wrapped(|ui| {
-        if ui.button("Open a recording…").on_hover_text("A .csv or .bwr file, in the graph").clicked() {
-            model.front.graph.files.open_as = OpenAs::Recording;
-            model.front.graph.files.choose_recording();
-            commands.push(Command::Show(Screen::Pwm));
+        let what = "A profile, backup, recording, tuning report, script or firmware image";
+        if ui.button("Open a file…").on_hover_text(what).clicked() {
+            commands.push(Command::ChooseFile);
+        }
+        if ui.button("Backups…").on_hover_text("What this computer keeps of each controller").clicked() {
+            commands.push(Command::ListBackups);
         }
         if ui.button("Write a script").on_hover_text("The MCL editor, which checks what is written").clicked()
         {
@@ -160,8 +166,42 @@ fn files_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             commands.push(Command::OpenCanOpen);
         }
     });
+    ui.horizontal(|ui| {
+        let width = (ui.available_width() - OPEN_WIDTH).max(120.0);
+        let response = ui
+            .allocate_ui(vec2(width, ui.spacing().interact_size.y), |ui| {
+                text_field_ui(
+                    ui,
+                    &mut model.files.path,
+                    "File to open",
+                    "Path of a file, or drop one on this window",
+                )
+            })
+            .inner;
+        let is_entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+        let path = model.files.path.trim().to_owned();
+        let is_clicked = ui.add_enabled(!path.is_empty(), Button::new("Open")).clicked();
+        if (is_entered || is_clicked) && !path.is_empty() {
+            commands.push(Command::OpenFile(path.into()));
+        }
+    });
+    ui.weak(
+        "A profile, backup, recording, tuning report, script or firmware image: it shows by itself which.",
+    );
     if let Some(text) = model.front.graph.files.loading_text() {
         ui.weak(text);
+    }
+    if model.files.recent.is_empty() {
+        return;
+    }
+    ui.add_space(10.0);
+    heading_ui(ui, "Opened before");
+    for path in model.files.recent.iter().take(RECENT_SHOWN) {
+        let name =
+            Path::new(path).file_name().map_or_else(|| path.clone(), |name| name.display().to_string());
+        if ui.button(name).on_hover_text(path).clicked() {
+            commands.push(Command::OpenFile(path.into()));
+        }
     }
 }
 

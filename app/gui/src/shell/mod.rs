@@ -10,6 +10,7 @@ use super::{help, screens, traffic, world};
 
 mod bottom;
 mod devices;
+mod drop;
 mod left;
 mod marks;
 mod menu;
@@ -62,4 +63,5 @@ pub fn shell_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     screens::examination::examination_ui(ui.ctx(), model, commands, room);
     screens::graph_place::detached_ui(ui.ctx(), model, commands);
     palette::palette_ui(ui.ctx(), model, commands);
+    drop::drop_ui(ui.ctx());
 }

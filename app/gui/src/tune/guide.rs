@@ -34,14 +34,20 @@ pub fn guide_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         }
     });
     ui.add_space(4.0);
-    let room = ui.available_rect_before_wrap();
     if model.front.tune.is_running() {
+        let room = ui.available_rect_before_wrap();
         return part_ui(ui, room, |ui| {
             if let Some(sequence) = model.front.tune.running() {
                 plots::live_ui(ui, &sequence.live.look(), which);
             }
         });
     }
+    found_ui(ui, model, which, commands);
+}
+
+/// What the runs have found, with its picture: it needs no controller.
+pub fn found_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands) {
+    let room = ui.available_rect_before_wrap();
     if room.width() < SIDE_BY_SIDE {
         ScrollArea::vertical().id_salt("tune").auto_shrink(false).show(ui, |ui| {
             result::result_ui(ui, model, which, commands);

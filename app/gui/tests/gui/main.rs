@@ -5,6 +5,7 @@ mod clamp;
 mod debugger;
 mod echo;
 mod examination;
+mod files;
 mod functions;
 mod general;
 mod generator;

@@ -158,6 +158,14 @@ impl Firmware {
         all
     }
 
+    /// Takes a file that was chosen elsewhere; its risks are to be accepted anew.
+    pub fn choose(&mut self, file: &Path) {
+        if !self.stage.is_running() {
+            self.path = file.display().to_string();
+            self.accepted = false;
+        }
+    }
+
     /// Opens the desktop's own dialog.
     pub fn browse(&mut self) {
         let kind = FileKind { title: "Firmware image".to_owned(), extension: "bin".to_owned() };

@@ -1,5 +1,7 @@
 //! What the window keeps of an MCP's own: the firmware update, the composer of raw commands, and what its settings mean.
 
+use std::path::Path;
+
 use brushwork_link::{Event, Failure, Message};
 
 pub mod composer;
@@ -55,8 +57,11 @@ impl Own for McpConnection {
         self.composer.answered(id, &Err(why));
     }
 
-    fn open_firmware(&mut self) {
+    fn open_firmware(&mut self, file: Option<&Path>) {
         self.firmware.open = true;
+        if let Some(file) = file {
+            self.firmware.choose(file);
+        }
     }
 }
 
