@@ -28,7 +28,7 @@ use super::remember::Memory;
 use super::screens::face;
 use super::{actions, keys, shell, theme};
 use crate::model::Afterwards;
-use crate::model::{Arming, Effect, Gravity, Owner, Screen, Sheet, Tab};
+use crate::model::{Arming, Effect, Gravity, Owner, Screen, Section, Sheet, Tab};
 
 mod debugging;
 mod examining;
@@ -337,6 +337,11 @@ impl App {
             Command::ShowSettings(section) => {
                 self.show(Screen::GeneralSettings);
                 self.model.front.general.turn_to(section);
+            }
+            Command::ShowRecipe(job) => {
+                self.show(Screen::GeneralSettings);
+                self.model.front.general.recipes.job = job;
+                self.model.front.general.turn_to(Section::Recipes);
             }
             Command::OpenDrawer(screen, tab) => self.open_drawer(screen, tab),
             Command::FindSetting => {

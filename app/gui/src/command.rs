@@ -10,6 +10,7 @@ use brushwork_values::{Motor, Value};
 use egui::ThemePreference;
 
 use super::debugger::DebugAction;
+use super::family::recipe::Job;
 use super::family_action::FamilyAction;
 use super::graph::GraphAction;
 use super::mcl::MclAction;
@@ -74,6 +75,8 @@ pub enum Command {
     },
     /// Shows General Settings with a sheet in place of the list.
     OpenSheet(Sheet),
+    /// Shows a recipe.
+    ShowRecipe(Job),
     /// Shows a part of General Settings.
     ShowSettings(Section),
     /// Shows General Settings and puts the keyboard into its search field.

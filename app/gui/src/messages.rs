@@ -288,6 +288,33 @@ messages! {
 }
 
 messages! {
+    /// How an input pin stands, and what an action of it will do.
+    pub enum PinMessage {
+        Unread { pin: String } "{pin} measures nothing that is read yet: write its type first.",
+        AtGround { pin: String } "{pin} is at its low end now, as a contact is that is closed to ground.",
+        AtSupply { pin: String } "{pin} is at its high end now, as a contact is that is closed to 5 V.",
+        Reads { pin: String, reading: f64 } "{pin} reads {reading:.0} now.",
+        Pulses { pin: String, microseconds: f64 } "{pin} sees pulses of {microseconds:.0} µs now.",
+        AtOnce { pin: String, end: &'static str, what: Message } "{pin} stands at its {end} now: as soon as this is written, {what}.",
+        Later { pin: String, end: &'static str, what: Message } "Once {pin} is at its {end}, {what}.",
+        Unseen { pin: String, end: &'static str, what: Message } "Where {pin} will stand is not known before its type is written. If that is at its {end}, {what} at once.",
+        MotorOne "motor 1",
+        MotorTwo "motor 2",
+        BothMotors "both motors",
+        Stops { which: Message } "{which} stops and stays at rest while it is there",
+        Coasts { which: Message } "{which} runs free while it is there",
+        TurnsRound { which: Message } "the direction of {which} is turned round",
+        NotForward { which: Message } "nothing drives {which} forward",
+        NotBackward { which: Message } "nothing drives {which} backward",
+        BecomesHome { which: Message, counts: f64 } "the position of {which} becomes {counts:.0}",
+        ScriptStarts "the script starts",
+        ScriptStops "the script stops",
+        ScriptRestarts "the script starts anew",
+        EStops "an emergency stop holds all motors",
+    }
+}
+
+messages! {
     /// Why a file has no place in the window.
     pub enum OpenFileMessage {
         TooMany { count: usize, most: usize } "{count} files were dropped; the first {most} of them were opened.",

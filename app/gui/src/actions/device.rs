@@ -41,6 +41,8 @@ pub(super) const ACTIONS: &[Action] = &[
         key(Key::F10), settings_idle, |_| Command::OpenSheet(Sheet::Save)),
     entry!(Device 3 "device.conflicts", "Settings Conflicts", "Lists settings that contradict each other, with the way to each.",
         Keys::None, |model| has(model, Ability::Conflicts, connected), |_| Command::ShowSettings(Section::Conflicts)),
+    entry!(Device 3 "device.recipes", "Recipes…", "Home and limit switches, sticks, encoders, brakes and the like: wiring, settings, and what comes of them.",
+        Keys::None, has_recipes, |_| Command::ShowSettings(Section::Recipes)),
     entry!(Device 3 "device.clamp-test", "Voltage Clamp Test…", "Goes to the guided test of the voltage clamp; it moves a motor once armed and started there.",
         Keys::None, |model| has(model, Ability::ClampTest, connected), |_| Command::ShowSettings(Section::ClampTest)),
     entry!(Device 3 "device.measure-qpps", "Measure QPPS…", "Goes to the guided measurement of full speed; it moves a motor once armed and started there.",
@@ -84,6 +86,14 @@ fn has(model: &Model, ability: Ability, ready: fn(&Model) -> Ready) -> Ready {
 fn has_loop(model: &Model, screen: Screen) -> Ready {
     connected(model)?;
     only(model.front.screens().contains(&screen), "This controller has no such loop as it is set.")
+}
+
+fn has_recipes(model: &Model) -> Ready {
+    connected(model)?;
+    only(
+        model.front.family().recipes().is_some(),
+        "There are no recipes for this controller. Its settings stand in General Settings.",
+    )
 }
 
 fn can_tune(model: &Model) -> Ready {

@@ -15,6 +15,7 @@ use brushwork_values::Motor;
 use super::known::Known;
 use super::own::Own;
 use super::path::PathStep;
+use super::recipe::Recipes;
 use super::words::{self, SettingsWords};
 use crate::model::{
     HelpPage, IndicatorInfo, IndicatorState, Position, Pwm, Screen, Simulated, Tab, Velocity, state_of,
@@ -50,6 +51,11 @@ pub trait Family: Sync {
     /// The steps that set a unit up, in their order.
     fn path(&self) -> &'static [PathStep] {
         &[]
+    }
+
+    /// Its recipes, if it has any.
+    fn recipes(&self) -> Option<&'static dyn Recipes> {
+        None
     }
 
     /// The settings that turn an encoder's and a motor's direction round; `{n}` stands for the number of the motor.

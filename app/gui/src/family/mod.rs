@@ -13,6 +13,7 @@ mod facts;
 mod known;
 mod own;
 pub mod path;
+pub mod recipe;
 mod words;
 
 pub use facts::{Ability, ActiveIndicator, Family, Figure, Figures, Sliders};

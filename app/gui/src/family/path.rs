@@ -1,5 +1,6 @@
 //! The steps that lead from a controller that was just connected to an axis that is tuned, saved and backed up, as a family has them.
 
+use super::recipe::Job;
 use crate::model::{Screen, Tab};
 
 /// What is to be done in a step.
@@ -86,6 +87,8 @@ pub enum Place {
     Settings(&'static [&'static str]),
     Screen(Screen),
     Drawer(Screen, Tab),
+    /// One of the recipes.
+    Recipe(Job),
     /// Here: a sheet that shows what is saved.
     Save,
     /// Here and at once.

@@ -63,6 +63,8 @@ pub struct Judged {
 pub struct Path {
     /// The step that is looked at, if not the first one that is left.
     pub chosen: Option<Step>,
+    /// The keyboard is to go to what leads to the step that is shown.
+    pub wants_focus: bool,
     /// Steps that were left out.
     left_out: BTreeSet<Step>,
     pub turning: Turning,

@@ -24,6 +24,7 @@ mod pictures;
 mod pins;
 mod position;
 mod qpps;
+mod recipes;
 mod safety;
 mod scripts;
 mod settings_state;

@@ -265,6 +265,10 @@ fn every_setting_and_page_that_a_step_names_exists_for_each_model_and_firmware()
                     assert!(table.rows().iter().any(is_there), "{name}: {groups:?}");
                 }
                 Place::Drawer(screen, tab) => assert!(family.tabs(screen).contains(&tab), "{name}: {tab:?}"),
+                Place::Recipe(job) => {
+                    let known = family.recipes().expect("a family with such a step has recipes");
+                    assert!(known.all().iter().any(|recipe| recipe.job == job), "{name}: {job:?}");
+                }
                 Place::Screen(screen) => assert!(brushwork_gui::model::Screen::ALL.contains(&screen)),
                 Place::Save | Place::BackUp => {}
             }

@@ -19,7 +19,9 @@ use brushwork_values::{Code, Motor};
 use super::diagnosis::ends;
 use super::{McpConnection, script};
 use crate::family::path::{BACK_UP, PathStep, Place, SAVE, ShownBy, Step};
+use crate::family::recipe::{Job, Recipes};
 use crate::family::{Ability, ActiveIndicator, Family, Figure, Figures, Known, Own, Sliders};
+use crate::mcp::recipes::McpRecipes;
 use crate::model::{HelpPage, IndicatorInfo, IndicatorState, Screen, Tab, state_of};
 use crate::tune::Loop;
 
@@ -55,6 +57,10 @@ impl Family for Mcp {
 
     fn path(&self) -> &'static [PathStep] {
         PATH
+    }
+
+    fn recipes(&self) -> Option<&'static dyn Recipes> {
+        Some(&McpRecipes)
     }
 
     fn direction_keys(&self) -> Option<[&'static str; 2]> {
@@ -265,11 +271,7 @@ const PATH: &[PathStep] = &[
         place: Place::Drawer(Screen::Pwm, Tab::Direction),
     },
     PathStep { step: Step::Encoder, shown_by: ShownBy::Counting, place: Place::Settings(&["Encoders"]) },
-    PathStep {
-        step: Step::Switches,
-        shown_by: ShownBy::Switches,
-        place: Place::Settings(&["Pins", "Control pins"]),
-    },
+    PathStep { step: Step::Switches, shown_by: ShownBy::Switches, place: Place::Recipe(Job::Home) },
     PathStep {
         step: Step::Velocity,
         shown_by: ShownBy::Settings(&["motor{n}.velocity.p", "motor{n}.velocity.i", "motor{n}.velocity.d"]),

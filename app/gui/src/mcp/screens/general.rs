@@ -7,6 +7,7 @@ use egui::{Ui, vec2};
 
 use super::{clamp, conflicts, pin};
 use crate::command::Commands;
+use crate::family::recipe::Job;
 use crate::model::{GeneralView, IndicatorState, Model, Section, UnitSettings};
 use crate::screens::general::rows::{HEIGHT, MARK_WIDTH};
 use crate::screens::general::sheet_parts::indicator_ui;
@@ -43,8 +44,23 @@ fn section_ui(ui: &mut Ui, model: &mut Model, height: f32, commands: &mut Comman
 pub fn around_rows_ui(ui: &mut Ui, general: &mut GeneralView<'_>, is_before: bool) {
     match general.section {
         Section::Group(Group::SCRIPTING) if is_before => autorun_ui(ui, general),
+        Section::Group(Group::ENCODERS) if !is_before => encoder_ui(ui, general),
         Section::Group(Group::UNIT) if !is_before => bridge_ui(ui, general.unit()),
-        Section::Group(_) | Section::One(..) | Section::Conflicts | Section::ClampTest => {}
+        Section::Group(_) | Section::One(..) | Section::Conflicts | Section::ClampTest | Section::Recipes => {
+        }
+    }
+}
+
+/// The kind of an encoder is set at its pins: the way to what sets both.
+fn encoder_ui(ui: &mut Ui, general: &mut GeneralView<'_>) {
+    ui.add_space(6.0);
+    if ui
+        .button("Recipe: Encoder")
+        .on_hover_text("Its kind, its pins, its wiring, and where it stands")
+        .clicked()
+    {
+        general.recipes.job = Job::Encoder;
+        general.turn_to(Section::Recipes);
     }
 }
 

@@ -14,7 +14,7 @@ use egui::{
 use super::calibrate::calibrate_ui;
 use super::signal_graph::signal_graph_ui;
 use crate::command::{Command, Commands};
-use crate::model::{GeneralView, UnitSettings};
+use crate::model::{GeneralView, Section, UnitSettings};
 use crate::screens::general::rows::{self, Columns};
 use crate::widgets::readout::Readout;
 
@@ -103,6 +103,11 @@ fn head_ui(ui: &mut Ui, general: &mut GeneralView<'_>, pin: usize, commands: &mu
         );
         if response.on_hover_text(note).on_disabled_hover_text(note).clicked() {
             action = Some(pin);
+        }
+        if ui.button("Recipes…").on_hover_text("Switches, sticks and encoders at this pin, with their wiring").clicked() {
+            general.recipes.answers.pin = pin;
+            general.turn_to(Section::Recipes);
+            return;
         }
         if is_edited {
             let hint = "Write the mode to see the live signal.";

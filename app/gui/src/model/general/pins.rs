@@ -4,6 +4,7 @@ use brushwork_link::settings::Group;
 
 use super::General;
 use super::section::Section;
+use super::sheet::Sheet;
 use super::view::GeneralView;
 
 impl General {
@@ -11,13 +12,20 @@ impl General {
     pub fn pin(&self) -> Option<usize> {
         match self.section {
             Section::One(Group::PINS, number) if !self.is_filtered() => Some(number),
-            Section::Group(_) | Section::One(..) | Section::Conflicts | Section::ClampTest => None,
+            Section::Group(_)
+            | Section::One(..)
+            | Section::Conflicts
+            | Section::ClampTest
+            | Section::Recipes => None,
         }
     }
 
     /// Whether the screen, while it is shown, wants the live signals of the pins.
     pub fn wants_signals(&self) -> bool {
-        self.calibration.is_some() || self.sheet.is_none() && self.pin().is_some()
+        let shows_pins = self.pin().is_some() || self.section == Section::Recipes && !self.is_filtered();
+        // What a write does at once depends on where the pins stand.
+        let weighs_write = self.sheet == Some(Sheet::Write);
+        self.calibration.is_some() || weighs_write || self.sheet.is_none() && shows_pins
     }
 
     /// Shows a part of the settings.

@@ -6,6 +6,7 @@ use super::compare::Comparing;
 use super::profile::Profiles;
 use super::section::Section;
 use super::sheet::Sheet;
+use crate::family::recipe::{Answers, Job};
 
 /// The state of the screen.
 #[derive(Debug, Default)]
@@ -23,6 +24,8 @@ pub struct General {
     pub sought: Option<String>,
     /// Which two copies are set side by side.
     pub comparing: Comparing,
+    /// Which recipe is looked at, and what was chosen for it.
+    pub recipes: RecipeChoice,
     /// Which motor is copied to the other, 1 or 2.
     pub copied_motor: usize,
     pub sheet: Option<Sheet>,
@@ -30,6 +33,19 @@ pub struct General {
     pub wants_search: bool,
     /// Opened as soon as the settings were read.
     pub(super) waiting_sheet: Option<Sheet>,
+}
+
+/// Which recipe is looked at, and what was chosen of all that recipes ask for.
+#[derive(Clone, Debug)]
+pub struct RecipeChoice {
+    pub job: Job,
+    pub answers: Answers,
+}
+
+impl Default for RecipeChoice {
+    fn default() -> Self {
+        Self { job: Job::Home, answers: Answers::default() }
+    }
 }
 
 impl General {

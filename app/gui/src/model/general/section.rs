@@ -14,6 +14,8 @@ pub enum Section {
     Conflicts,
     /// The voltage clamp test.
     ClampTest,
+    /// What people want, with the settings that do it.
+    Recipes,
 }
 
 /// The ports whose lines are also those of a bus (MCP manual 1.9.4, 1.9.6): their numbers and what to call them.
@@ -62,7 +64,7 @@ pub fn sections(table: &SettingsTable) -> Vec<(Section, &str)> {
     }
     // Ion Studio lists ports, buses, inputs and outputs in this order.
     let place = |section: Section| match section {
-        Section::Conflicts | Section::ClampTest => (0, Group::UNIT),
+        Section::Conflicts | Section::ClampTest | Section::Recipes => (0, Group::UNIT),
         Section::Group(group) => (0, group),
         Section::One(group @ Group::STREAMS, _) => (1, group),
         Section::One(group @ Group::PINS, _) => (3, group),

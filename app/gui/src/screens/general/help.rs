@@ -5,6 +5,7 @@ use egui::{Frame, Label, Margin, RichText, ScrollArea, Stroke, Ui};
 
 use crate::model::{GeneralView, UnitSettings};
 use crate::theme::Palette;
+use crate::widgets::NO_VALUE;
 
 /// Its height on a screen of `available` points: less where the settings themselves have little room.
 pub fn height(available: f32) -> f32 {
@@ -31,9 +32,12 @@ pub fn help_ui(ui: &mut Ui, general: &GeneralView<'_>, height: f32) {
     });
 }
 
-fn row_ui(ui: &mut Ui, unit: &UnitSettings, row: &Row) {
+pub fn row_ui(ui: &mut Ui, unit: &UnitSettings, row: &Row) {
     let palette = Palette::of(ui);
-    ui.strong(row.title());
+    ui.horizontal(|ui| {
+        ui.strong(row.title());
+        copies_ui(ui, unit, row);
+    });
     if let Some(trouble) = unit.trouble(&row.key) {
         ui.add(Label::new(RichText::new(trouble.to_string()).color(palette.error)).wrap());
     }
@@ -42,6 +46,21 @@ fn row_ui(ui: &mut Ui, unit: &UnitSettings, row: &Row) {
     }
     ui.add(Label::new(row.help).wrap());
     ui.add(Label::new(RichText::new(figures(unit, row)).weak()).wrap());
+}
+
+/// What can be taken along as text: the value, and the row as the lines of a table have it.
+pub fn copies_ui(ui: &mut Ui, unit: &UnitSettings, row: &Row) {
+    let text = |value: Option<_>| value.map_or_else(|| NO_VALUE.to_owned(), |value| row.format(value));
+    let wanted = text(unit.wanted(&row.key));
+    let cells =
+        [&row.title(), &wanted, &text(unit.on_controller(&row.key)), &row.format(row.default), &row.key];
+    let line = cells.map(String::as_str).join("\t");
+    for (title, copied) in [("Copy value", wanted), ("Copy row", line)] {
+        if ui.small_button(title).on_hover_text(format!("Copies {}", copied.replace('\t', ", "))).clicked() {
+            ui.ctx().copy_text(copied);
+            ui.close();
+        }
+    }
 }
 
 /// Range, default, and what the value means besides its text.

@@ -16,9 +16,11 @@ pub(crate) mod help;
 mod kept;
 mod nav;
 mod profile;
+mod recipes;
 pub(crate) mod rows;
 pub(crate) mod sheet;
 pub(crate) mod sheet_parts;
+mod wiring;
 
 /// The share of the screen that the list of sections takes, and its least and greatest width.
 const NAV_SHARE: f32 = 0.25;
@@ -41,6 +43,7 @@ pub fn framed_ui(
 ) {
     let family = model.front.family();
     let stream = model.front.link.stream;
+    let will = family.recipes().map(|known| recipes::consequences(&model.front, known)).unwrap_or_default();
     let general = &mut model.front.general_view();
     if general.settings.wants_reading() {
         commands.push(Command::Settings(SettingsAction::Read));
@@ -48,7 +51,7 @@ pub fn framed_ui(
     head::head_ui(ui, general, family, commands);
     ui.add_space(4.0);
     match general.sheet.is_some() {
-        true => sheet::sheet_ui(ui, general, stream, family.words(), commands),
+        true => sheet::sheet_ui(ui, general, (stream, &will), family.words(), commands),
         false => list_ui(ui, model, commands),
     }
 }
@@ -66,6 +69,9 @@ pub fn sections_ui(
     own_ui: impl Fn(&mut Ui, &mut Model, f32, &mut Commands) -> bool,
 ) {
     let size = ui.available_size();
+    let recipes = model.front.family().recipes().map(|_| (Section::Recipes, "Recipes", String::new()));
+    let own: Vec<OwnSection> = recipes.into_iter().chain(own.iter().cloned()).collect();
+    let own = &own[..];
     if size.x < SIDE_BY_SIDE {
         nav::choice_ui(ui, &mut model.front.general_view(), own);
         return section_ui(ui, model, commands, own_ui);
@@ -97,6 +103,11 @@ fn section_ui(
     // Pages without rows have nothing to explain.
     let has_rows = !matches!(model.front.general.section, Section::Conflicts | Section::ClampTest)
         || model.front.general.is_filtered();
+    let recipes = model.front.family().recipes();
+    let shows_recipes = model.front.general.section == Section::Recipes && !model.front.general.is_filtered();
+    if let Some(recipes) = recipes.filter(|_| shows_recipes) {
+        return recipes::recipes_ui(ui, &mut model.front, recipes, room);
+    }
     if !own_ui(ui, model, if has_rows { height } else { room }, commands) {
         let face = face::of(model.front.family());
         rows::rows_ui(ui, &mut model.front.general_view(), face, height);

@@ -29,7 +29,11 @@ pub fn choice_ui(ui: &mut Ui, general: &mut GeneralView<'_>, own: &[OwnSection])
     let Some(unit) = general.unit() else { return };
     let current = match general.section {
         _ if general.is_filtered() => "all sections".to_owned(),
-        section @ (Section::Group(_) | Section::One(..) | Section::Conflicts | Section::ClampTest) => {
+        section @ (Section::Group(_)
+        | Section::One(..)
+        | Section::Conflicts
+        | Section::ClampTest
+        | Section::Recipes) => {
             let own = own.iter().map(|(section, name, _)| (*section, *name));
             let named = sections(unit.table()).into_iter().chain(own).find(|(other, _)| *other == section);
             named.map_or_else(String::new, |(_, name)| name.to_owned())
@@ -100,7 +104,7 @@ fn section_ui(ui: &mut Ui, name: &str, function: Option<&str>, mark: String, is_
 fn function_of(unit: &UnitSettings, section: Section) -> Option<String> {
     match section {
         Section::One(group, number) => unit.function(group, number),
-        Section::Group(_) | Section::Conflicts | Section::ClampTest => None,
+        Section::Group(_) | Section::Conflicts | Section::ClampTest | Section::Recipes => None,
     }
 }
 

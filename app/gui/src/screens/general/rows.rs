@@ -1,9 +1,9 @@
 //! The list of settings: name, field, what the controller has, the default, revert.
 
 use brushwork_link::settings::Row;
-use egui::{Align, Button, Label, Layout, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
+use egui::{Align, Button, Label, Layout, Rect, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 
-use super::editor;
+use super::{editor, help};
 use crate::model::{GeneralView, IndicatorState, Section, UnitSettings};
 use crate::screens::face::Face;
 use crate::theme::Palette;
@@ -32,7 +32,7 @@ pub struct Columns {
 pub type Extra<'a> = &'a mut dyn FnMut(&mut Ui, &mut UnitSettings, &Row);
 
 impl Columns {
-    fn fit(width: f32, gap: f32) -> Self {
+    pub fn fit(width: f32, gap: f32) -> Self {
         Self::with(width, gap, 0.0)
     }
 
@@ -91,6 +91,7 @@ pub fn list_ui(
     extra: Extra<'_>,
 ) {
     let is_filtered = general.is_filtered();
+    let open = general.section;
     let sought = general.sought.take();
     let mut explained = None;
     let Some(unit) = general.unit_mut() else { return };
@@ -100,8 +101,10 @@ pub fn list_ui(
         if is_filtered && section.replace(Section::of(&row)) != Some(Section::of(&row)) {
             section_heading_ui(ui, &row);
         }
+        // Among its like a pin or a port needs no name.
+        let is_one = !is_filtered && Section::of(&row) == open && matches!(open, Section::One(..));
         // The key as identity: rows come and go with the filter.
-        if ui.push_id(key, |ui| row_ui(ui, unit, &row, columns, is_filtered, extra)).inner {
+        if ui.push_id(key, |ui| row_ui(ui, unit, &row, columns, is_one, extra)).inner {
             explained = Some(key.clone());
         }
         if sought.as_deref() == Some(key) {
@@ -142,7 +145,7 @@ fn row_ui(
     unit: &mut UnitSettings,
     row: &Row,
     columns: Columns,
-    is_filtered: bool,
+    is_one: bool,
     extra: Extra<'_>,
 ) -> bool {
     let locked = unit.locked(row);
@@ -151,9 +154,11 @@ fn row_ui(
         ui.allocate_ui_with_layout(vec2(width, HEIGHT), Layout::left_to_right(Align::Center), |ui| {
             ui.set_min_height(HEIGHT);
             mark_ui(ui, unit, row);
-            let is_one = matches!(Section::of(row), Section::One(..)) && !is_filtered;
             let title = if is_one { row.label.to_owned() } else { row.title() };
-            text_ui(ui, &title, &title, columns.name, locked.is_some());
+            let name = text_ui(ui, &title, &title, columns.name, locked.is_some());
+            // Pressed by the other button alone, and never by the keyboard: the explanation below has the same.
+            let name = ui.interact(name, ui.scope_id().with("name"), Sense::CLICK);
+            name.context_menu(|ui| help::copies_ui(ui, unit, row));
             let field = ui.allocate_ui_with_layout(
                 vec2(FIELD_WIDTH, HEIGHT),
                 Layout::left_to_right(Align::Center),
@@ -203,14 +208,16 @@ fn mark_ui(ui: &mut Ui, unit: &UnitSettings, row: &Row) {
 }
 
 /// Text in a place of fixed width; what does not fit is cut off and shown by a pointer over it.
-fn text_ui(ui: &mut Ui, text: &str, spoken: &str, width: f32, is_weak: bool) {
+fn text_ui(ui: &mut Ui, text: &str, spoken: &str, width: f32, is_weak: bool) -> Rect {
     let color = if is_weak { Palette::of(ui).weak_text } else { Palette::of(ui).text };
     ui.allocate_ui_with_layout(vec2(width, HEIGHT), Layout::left_to_right(Align::Center), |ui| {
         ui.set_min_width(width);
         let label = Label::new(RichText::new(text).color(color)).selectable(false).truncate();
         let response = ui.add(label);
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, spoken));
-    });
+    })
+    .response
+    .rect
 }
 
 fn locked_ui(ui: &mut Ui, row: &Row, reason: &str) {

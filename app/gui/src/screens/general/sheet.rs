@@ -16,10 +16,13 @@ use brushwork_core::keep::WearLevel;
 /// Room for the buttons below the text.
 const BUTTONS_HEIGHT: f32 = 44.0;
 
+/// What is known of a write before it: the port that this end is wired to, and what the edits will do at once.
+type Writing<'w> = (Option<Stream>, &'w [(IndicatorState, Message)]);
+
 pub fn sheet_ui(
     ui: &mut Ui,
     general: &mut GeneralView<'_>,
-    stream: Option<Stream>,
+    writing: Writing<'_>,
     words: &SettingsWords,
     commands: &mut Commands,
 ) {
@@ -29,7 +32,7 @@ pub fn sheet_ui(
     let offers = ui.scope(|ui| {
         ui.set_height(height);
         let area = ScrollArea::vertical().id_salt(format!("{sheet:?}")).auto_shrink(false);
-        area.show(ui, |ui| content_ui(ui, general, &sheet, stream, words)).inner
+        area.show(ui, |ui| content_ui(ui, general, &sheet, writing, words)).inner
     });
     buttons_ui(ui, general, &offers.inner, commands);
 }
@@ -39,7 +42,7 @@ fn content_ui(
     ui: &mut Ui,
     general: &mut GeneralView<'_>,
     sheet: &Sheet,
-    stream: Option<Stream>,
+    writing: Writing<'_>,
     words: &SettingsWords,
 ) -> Vec<Offer> {
     match sheet {
@@ -56,7 +59,7 @@ fn content_ui(
     let Some(unit) = general.unit() else { return Vec::new() };
     match sheet {
         Sheet::Read => read_ui(ui, unit, words),
-        Sheet::Write => write_ui(ui, unit, stream),
+        Sheet::Write => write_ui(ui, unit, writing),
         Sheet::Defaults => defaults_ui(ui, unit, words),
         Sheet::Report { title, sentences } => report_ui(ui, &title.to_string(), sentences),
         _ => Vec::new(),
@@ -125,7 +128,7 @@ fn swapped(difference: &Difference) -> Difference {
     Difference { key: difference.key.clone(), left: difference.right, right: difference.left }
 }
 
-fn write_ui(ui: &mut Ui, unit: &UnitSettings, stream: Option<Stream>) -> Vec<Offer> {
+fn write_ui(ui: &mut Ui, unit: &UnitSettings, (stream, will): Writing<'_>) -> Vec<Offer> {
     let changes = unit.changes();
     title_ui(ui, "Write settings");
     text_ui(
@@ -134,6 +137,9 @@ fn write_ui(ui: &mut Ui, unit: &UnitSettings, stream: Option<Stream>) -> Vec<Off
          ones back until they are saved to EEPROM. A backup is made first.",
     );
     differences_ui(ui, unit, changes.iter().cloned());
+    for (state, what) in will {
+        indicator_ui(ui, *state, what);
+    }
     for refusal in unit.refused() {
         indicator_ui(ui, IndicatorState::Warning, &format!("{refusal} It is not written."));
     }

@@ -7,7 +7,6 @@ use super::graph_place::graph_place_ui;
 use super::split::Split;
 use super::{face, title_ui};
 use crate::command::Commands;
-use crate::focus::{Region, region_ui};
 use crate::model::{IndicatorState, Model};
 
 mod history;
@@ -29,7 +28,6 @@ pub fn status_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         return graph_place_ui(ui, model, commands);
     }
     let split = Split::of_long(ui, model.screen, bottom);
-    region_ui(ui, Region::Controls);
     split.above_ui(ui, model, |ui, model| details_ui(ui, model, columns, commands));
     split.graph_ui(ui, model, commands);
 }

@@ -5,6 +5,7 @@ use egui::{Button, Frame, Label, Margin, RichText, Role, Stroke, Ui, WidgetInfo,
 
 use crate::command::{Command, Commands};
 use crate::family::path::{PathStep, Place};
+use crate::focus::{Region, region_ui};
 use crate::model::path::{Judged, Standing};
 use crate::model::{Connection, Model, Screen, Section, Sheet};
 use crate::theme::Palette;
@@ -15,7 +16,7 @@ const MARK: f32 = 14.0;
 pub fn path_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let steps = model.front.path_steps();
     if steps.is_empty() {
-        return;
+        return region_ui(ui, Region::Controls);
     }
     let next = steps.iter().find(|judged| judged.standing == Standing::Wrong);
     let next = next.or_else(|| steps.iter().find(|judged| judged.standing.is_open()));
@@ -39,6 +40,8 @@ pub fn path_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
                 }
             }
         });
+        // The next step is where the keyboard comes to; what leads to the others stands before it.
+        region_ui(ui, Region::Controls);
         match shown {
             Some(judged) => shown_ui(ui, &mut model.front, judged, commands),
             None => {
@@ -79,12 +82,16 @@ fn shown_ui(ui: &mut Ui, front: &mut Connection, judged: &Judged, commands: &mut
     ui.horizontal(|ui| {
         let go = Button::new(RichText::new(place_text(front, judged.step)).strong());
         let go = ui.add(go);
+        if std::mem::take(&mut front.path.wants_focus) {
+            go.request_focus();
+        }
         if go.clicked() {
             commands.push(place_command(front, judged.step.place));
         }
         let is_left_out = front.path.is_left_out(step);
         if is_left_out && ui.button("Take it up again").clicked() {
             front.path.leave_out(step, false);
+            front.path.wants_focus = true;
         }
         let hint = "Takes it off the list until the window is closed; the controller is not touched";
         if !is_left_out
@@ -92,6 +99,7 @@ fn shown_ui(ui: &mut Ui, front: &mut Connection, judged: &Judged, commands: &mut
             && ui.button("Leave it out").on_hover_text(hint).clicked()
         {
             front.path.leave_out(step, true);
+            front.path.wants_focus = true;
         }
         standing.mark().ui(ui, vec2(MARK + 4.0, MARK + 4.0), MARK * 0.4);
         let spoken = format!("{}: {}. {}", step.title(), standing.word(), judged.note);
@@ -110,6 +118,7 @@ fn place_text(front: &Connection, step: PathStep) -> String {
         }
         Place::Screen(screen) => format!("Go to {}", family.title(screen)),
         Place::Drawer(screen, tab) => format!("Go to {}: {}", family.title(screen), tab.title(screen)),
+        Place::Recipe(job) => format!("Go to Recipes: {}", job.title()),
         Place::Save => "Save…".to_owned(),
         Place::BackUp => "Back up now".to_owned(),
     }
@@ -123,6 +132,7 @@ fn place_command(front: &Connection, place: Place) -> Command {
         },
         Place::Screen(screen) => Command::Show(screen),
         Place::Drawer(screen, tab) => Command::OpenDrawer(screen, tab),
+        Place::Recipe(job) => Command::ShowRecipe(job),
         Place::Save => Command::OpenSheet(Sheet::Save),
         Place::BackUp => Command::BackUp,
     }
