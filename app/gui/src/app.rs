@@ -116,12 +116,16 @@ impl App {
         if keys::take_stop_key(&ctx).is_some() {
             self.stop();
         }
+        focus::note_input(&ctx);
         self.update(&ctx);
         self.take_files(&ctx);
         let mut commands = actions::shortcuts(&ctx, &mut self.model);
         shell::shell_ui(ui, &mut self.model, &mut commands);
         for command in commands {
             self.apply(command);
+        }
+        if let Some(unit) = self.model.front.settings.unit_mut() {
+            unit.note_step();
         }
         self.ask_debugger(&ctx);
         self.go_on_tuning();
@@ -351,6 +355,11 @@ impl App {
             Command::RevertSettings => {
                 if let Some(unit) = model.front.settings.unit_mut() {
                     unit.revert_all();
+                }
+            }
+            Command::StepSettings { again } => {
+                if let Some(unit) = model.front.settings.unit_mut() {
+                    unit.step_back(again);
                 }
             }
             Command::ClampTest => self.clamp_test(),

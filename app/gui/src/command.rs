@@ -10,7 +10,7 @@ use brushwork_values::{Motor, Value};
 use egui::ThemePreference;
 
 use super::debugger::DebugAction;
-use super::family::recipe::Job;
+use super::family::recipe::Goal;
 use super::family_action::FamilyAction;
 use super::graph::GraphAction;
 use super::mcl::MclAction;
@@ -76,13 +76,17 @@ pub enum Command {
     /// Shows General Settings with a sheet in place of the list.
     OpenSheet(Sheet),
     /// Shows a recipe.
-    ShowRecipe(Job),
+    ShowRecipe(Goal),
     /// Shows a part of General Settings.
     ShowSettings(Section),
     /// Shows General Settings and puts the keyboard into its search field.
     FindSetting,
     /// Drops the edits of settings that were not written.
     RevertSettings,
+    /// Takes the last step of the edits of settings back, or does it again.
+    StepSettings {
+        again: bool,
+    },
     Theme(ThemePreference),
     PlainEdges(bool),
     /// Size of everything in the window, percent.

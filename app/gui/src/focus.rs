@@ -4,7 +4,7 @@
 //! presses nothing, so that Enter after a change of screen does nothing unwanted.
 
 use egui::{
-    Context, FocusDirection, Id, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, TextStyle, Ui,
+    Context, Event, FocusDirection, Id, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, TextStyle, Ui,
     WidgetInfo, vec2,
 };
 
@@ -18,6 +18,8 @@ pub enum Region {
     Screen,
     /// What is set or driven on it.
     Controls,
+    /// What a tuning run has found.
+    Result,
     Graph,
     World,
     Traffic,
@@ -26,8 +28,16 @@ pub enum Region {
 
 impl Region {
     /// In the order of F6.
-    pub const ALL: [Self; 7] =
-        [Self::Devices, Self::Screen, Self::Controls, Self::Graph, Self::World, Self::Traffic, Self::Message];
+    pub const ALL: [Self; 8] = [
+        Self::Devices,
+        Self::Screen,
+        Self::Controls,
+        Self::Result,
+        Self::Graph,
+        Self::World,
+        Self::Traffic,
+        Self::Message,
+    ];
 }
 
 /// Frames in which a wish stays that no region takes.
@@ -39,6 +49,8 @@ struct Focus {
     places: [Option<(Pos2, u64)>; Region::ALL.len()],
     /// Where the keyboard is to go, and since which frame.
     wanted: Option<(Region, u64)>,
+    /// The pointer was used last, and not the keyboard.
+    by_pointer: bool,
 }
 
 fn id() -> Id {
@@ -51,6 +63,20 @@ fn frame(ctx: &Context) -> u64 {
 
 fn with<R>(ctx: &Context, act: impl FnOnce(&mut Focus) -> R) -> R {
     ctx.data_mut(|data| act(data.get_temp_mut_or_default::<Focus>(id())))
+}
+
+/// Takes note of what is used, once a frame: where a screen was opened by the pointer, nothing has to show where the keyboard is.
+pub fn note_input(ctx: &Context) {
+    let (keys, pointer) = ctx.input(|input| {
+        let is_key = |event: &Event| matches!(event, Event::Key { pressed: true, .. });
+        (input.events.iter().any(is_key), input.pointer.any_pressed() || input.pointer.any_released())
+    });
+    with(ctx, |focus| focus.by_pointer = if keys { false } else { pointer || focus.by_pointer });
+}
+
+/// Whether the heading shows that the keyboard is there.
+pub fn shows_ring(ctx: &Context) -> bool {
+    with(ctx, |focus| !focus.by_pointer)
 }
 
 /// The keyboard goes to a region as soon as it is drawn.
@@ -137,7 +163,7 @@ pub fn heading_ui(ui: &mut Ui, title: &str) -> Response {
     let response = ui.interact(place, id, sense);
     response.widget_info(|| WidgetInfo::labeled(Role::Heading, true, title));
     ui.painter().galley(place.min, text, palette.text);
-    if has_focus {
+    if has_focus && shows_ring(ui.ctx()) {
         let ring = Stroke::new(1.0, palette.accent);
         ui.painter().rect_stroke(place.expand(3.0), 3.0, ring, StrokeKind::Outside);
     }

@@ -59,9 +59,9 @@ const DARK: Palette = Palette {
     raised: hex(0x2a_2e_35),
     line: hex(0x3a_40_49),
     text: hex(0xdf_e3_e9),
-    weak_text: hex(0x97_a1_ae),
+    weak_text: hex(0xa6_b0_bc),
     accent: hex(0x4a_9d_f0),
-    chosen: hex(0x24_45_68),
+    chosen: hex(0x23_42_65),
     ok: hex(0x45_c0_6b),
     warning: hex(0xf0_b9_29),
     error: hex(0xff_5d_57),
@@ -87,11 +87,11 @@ const LIGHT: Palette = Palette {
     raised: hex(0xe2_e6_ec),
     line: hex(0xc3_ca_d4),
     text: hex(0x1a_1f_27),
-    weak_text: hex(0x55_60_6e),
-    accent: hex(0x15_66_c0),
+    weak_text: hex(0x4a_54_62),
+    accent: hex(0x14_60_b4),
     chosen: hex(0xcb_de_f5),
-    ok: hex(0x17_86_3d),
-    warning: hex(0xa8_6a_00),
+    ok: hex(0x0f_6c_31),
+    warning: hex(0x85_53_00),
     error: hex(0xc4_1c_1c),
     stop: hex(0xc9_1f_1f),
     on_stop: Color32::WHITE,
@@ -170,6 +170,47 @@ impl Palette {
             Theme::Dark => &DARK,
             Theme::Light => &LIGHT,
         }
+    }
+
+    /// Every colour that text is written in, with each that it stands on.
+    pub fn texts(&self) -> Vec<(&'static str, Color32, Color32)> {
+        let mut all = Vec::new();
+        for (name, color) in self.words() {
+            all.extend([self.ground, self.panel, self.raised].map(|back| (name, color, back)));
+        }
+        // What is chosen, and what the pointer is on.
+        for (name, color) in [("text", self.text), ("weak text", self.weak_text)] {
+            all.extend([self.chosen, self.line].map(|back| (name, color, back)));
+        }
+        all.push(("Stop", self.on_stop, self.stop));
+        let Syntax { command, operator, kind, register, directive, number, text, comment, label } =
+            self.syntax;
+        let syntax = [command, operator, kind, register, directive, number, text, comment, label];
+        all.extend(syntax.map(|color| ("a word of a program", color, self.ground)));
+        all
+    }
+
+    const fn words(&self) -> [(&'static str, Color32); 6] {
+        [
+            ("text", self.text),
+            ("weak text", self.weak_text),
+            ("accent", self.accent),
+            ("ok", self.ok),
+            ("warning", self.warning),
+            ("error", self.error),
+        ]
+    }
+
+    /// Every colour of a mark, a line of the graph or a ring, with each that it stands on. Lines that only part one thing from another are
+    /// none.
+    pub fn marks(&self) -> Vec<(&'static str, Color32, Color32)> {
+        let mut all = Vec::new();
+        for (name, color) in self.words() {
+            let backs = [self.ground, self.panel, self.raised, self.chosen];
+            all.extend(backs.map(|back| (name, color, back)));
+        }
+        all.extend(self.traces.map(|color| ("a trace", color, self.ground)));
+        all
     }
 
     /// The palette `ui` is drawn with.
@@ -277,41 +318,32 @@ mod tests {
 
     #[test]
     fn text_has_the_contrast_that_accessibility_rules_ask_for() {
-        for palette in [&DARK, &LIGHT] {
-            for back in [palette.ground, palette.panel, palette.raised] {
-                assert!(contrast(palette.text, back) >= 7.0, "text {:?} on {back:?}", palette.text);
-                assert!(contrast(palette.weak_text, back) >= 4.5, "weak {:?} on {back:?}", palette.weak_text);
+        for (theme, palette) in [("dark", &DARK), ("light", &LIGHT)] {
+            for back in [palette.ground, palette.panel, palette.raised, palette.chosen] {
+                assert!(contrast(palette.text, back) >= 7.0, "{theme}: text on {back:?}");
             }
-            assert!(contrast(palette.on_stop, palette.stop) >= 4.5);
-            assert!(contrast(palette.text, palette.chosen) >= 7.0);
+            for (name, color, back) in palette.texts() {
+                let found = contrast(color, back);
+                assert!(found >= 4.5, "{theme}: {name} {color:?} on {back:?} has {found:.2}");
+            }
         }
     }
 
     #[test]
     fn words_of_a_program_can_be_read() {
         for palette in [&DARK, &LIGHT] {
-            let Syntax { command, operator, kind, register, directive, number, text, comment, label } =
-                palette.syntax;
-            for color in [command, operator, kind, register, directive, number, text, comment, label] {
-                assert!(contrast(color, palette.ground) >= 4.5, "{color:?}");
-            }
+            let words = palette.texts().into_iter().filter(|(name, ..)| name.contains("program"));
+            let found: Vec<f64> = words.map(|(_, color, back)| contrast(color, back)).collect();
+            assert!(found.len() == 9 && found.iter().all(|contrast| *contrast >= 4.5), "{found:?}");
         }
     }
 
     #[test]
     fn indicators_and_traces_stand_out_from_what_is_behind_them() {
-        for palette in [&DARK, &LIGHT] {
-            for color in [palette.ok, palette.warning, palette.error] {
-                for back in [palette.ground, palette.panel, palette.raised] {
-                    assert!(contrast(color, back) >= 3.0, "{color:?} on {back:?}");
-                }
-            }
-            for color in palette.traces {
-                assert!(
-                    contrast(color, palette.ground) >= 3.0,
-                    "{color:?}: {}",
-                    contrast(color, palette.ground)
-                );
+        for (theme, palette) in [("dark", &DARK), ("light", &LIGHT)] {
+            for (name, color, back) in palette.marks() {
+                let found = contrast(color, back);
+                assert!(found >= 3.0, "{theme}: {name} {color:?} on {back:?} has {found:.2}");
             }
         }
     }

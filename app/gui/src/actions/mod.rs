@@ -127,6 +127,8 @@ pub enum Keys {
     OnMcl(KeyboardShortcut),
     /// Calls it while a program's text has the keyboard: fields for words use the same keys.
     InText(KeyboardShortcut),
+    /// Calls it from beside the MCL screen while no field for text has the keyboard: such fields use the same keys.
+    Beside(KeyboardShortcut),
     /// Is taken elsewhere, by a text field, and only listed here.
     Elsewhere(&'static str),
     /// The keys that stop, which are taken before anything else and only listed here.
@@ -175,9 +177,10 @@ impl Action {
     pub fn keys_text(&self, ctx: &Context) -> String {
         match self.keys {
             Keys::None => String::new(),
-            Keys::Shortcut(shortcut) | Keys::OnMcl(shortcut) | Keys::InText(shortcut) => {
-                ctx.format_shortcut(&shortcut)
-            }
+            Keys::Shortcut(shortcut)
+            | Keys::OnMcl(shortcut)
+            | Keys::InText(shortcut)
+            | Keys::Beside(shortcut) => ctx.format_shortcut(&shortcut),
             Keys::Elsewhere(text) => text.to_owned(),
             Keys::Stop => stop_words(ctx).to_owned(),
         }
@@ -189,6 +192,7 @@ pub fn shortcuts(ctx: &Context, model: &mut Model) -> Commands {
     let mut pressed: Vec<&Action> = Vec::new();
     let on_mcl = model.screen == Screen::MclEditor && model.palette.is_none();
     let in_text = on_mcl && has_keyboard(ctx, &model.mcl);
+    let beside = !on_mcl && !ctx.text_edit_focused();
     // Ctrl+Shift+S would also pass for Ctrl+S: more modifiers go first.
     for count in (0..=3).rev() {
         // What is for the program that is edited goes before what is for the whole window.
@@ -198,10 +202,12 @@ pub fn shortcuts(ctx: &Context, model: &mut Model) -> Commands {
                     Keys::Shortcut(shortcut) if general => shortcut,
                     Keys::OnMcl(shortcut) if !general && on_mcl => shortcut,
                     Keys::InText(shortcut) if !general && in_text => shortcut,
+                    Keys::Beside(shortcut) if general && beside => shortcut,
                     Keys::None
                     | Keys::Shortcut(_)
                     | Keys::OnMcl(_)
                     | Keys::InText(_)
+                    | Keys::Beside(_)
                     | Keys::Elsewhere(_)
                     | Keys::Stop => continue,
                 };
@@ -333,7 +339,11 @@ mod tests {
     #[test]
     fn nothing_takes_a_stop_key() {
         for action in all() {
-            if let Keys::Shortcut(shortcut) | Keys::OnMcl(shortcut) | Keys::InText(shortcut) = action.keys {
+            if let Keys::Shortcut(shortcut)
+            | Keys::OnMcl(shortcut)
+            | Keys::InText(shortcut)
+            | Keys::Beside(shortcut) = action.keys
+            {
                 assert!(!matches!(shortcut.logical_key, Key::Space | Key::Escape), "{}", action.id);
             }
         }

@@ -122,7 +122,7 @@ impl App {
                     let text = self.parts.keeping.store().notes_in(&unit).unwrap_or_default();
                     (unit, text)
                 };
-                self.model.files.notes = backups.iter().map(|backup| notes(backup.unit())).collect();
+                self.model.files.noted = backups.iter().map(|backup| notes(backup.unit())).collect();
                 self.model.files.settings = None;
                 self.model.files.backups = Some(backups);
             }

@@ -1,6 +1,6 @@
 //! The steps that lead from a controller that was just connected to an axis that is tuned, saved and backed up, as a family has them.
 
-use super::recipe::Job;
+use super::recipe::Goal;
 use crate::model::{Screen, Tab};
 
 /// What is to be done in a step.
@@ -88,7 +88,7 @@ pub enum Place {
     Screen(Screen),
     Drawer(Screen, Tab),
     /// One of the recipes.
-    Recipe(Job),
+    Recipe(Goal),
     /// Here: a sheet that shows what is saved.
     Save,
     /// Here and at once.

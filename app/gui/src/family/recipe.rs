@@ -5,14 +5,15 @@
 //! firmware.
 
 use brushwork_link::device::PinSignal;
-use brushwork_link::settings::{Kind, SettingValue, SettingsTable};
+use brushwork_link::settings::{Kind, SettingValue, SettingsImage, SettingsTable};
 use brushwork_link::{Channel, Message};
 
-use crate::model::{IndicatorState, UnitSettings};
+use super::known::Known;
+use crate::model::IndicatorState;
 
 /// What a person wants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Job {
+pub enum Goal {
     Home,
     Limit,
     EStop,
@@ -25,7 +26,7 @@ pub enum Job {
     Address,
 }
 
-impl Job {
+impl Goal {
     pub const ALL: [Self; 10] = [
         Self::Home,
         Self::Limit,
@@ -58,7 +59,7 @@ impl Job {
 /// One recipe.
 #[derive(Debug)]
 pub struct Recipe {
-    pub job: Job,
+    pub job: Goal,
     /// What it does and how it is wired, in a sentence or two.
     pub text: &'static str,
     /// What comes of it once it is written.
@@ -156,6 +157,16 @@ impl Part {
     }
 }
 
+/// The settings of a unit, as a recipe looks at them.
+pub struct Looked<'u> {
+    pub table: &'u SettingsTable,
+    /// What the controller works with.
+    pub held: Known<'u>,
+    /// What is wanted of it.
+    pub wanted: Known<'u>,
+    pub is_simulated: bool,
+}
+
 /// What a family knows of its recipes.
 pub trait Recipes: Sync {
     fn all(&self) -> &'static [Recipe];
@@ -175,11 +186,13 @@ pub trait Recipes: Sync {
         None
     }
 
-    /// Makes a pin measure so, as an edit, with all else of it as the factory has it, unless it measures so already.
-    fn use_pin(&self, _unit: &mut UnitSettings, _pin: usize, _wanted: PinUse) {}
+    /// What makes a pin measure so, with all else of it as the factory has it; nothing where it is wanted so already.
+    fn pin_use(&self, _unit: &Looked<'_>, _pin: usize, _wanted: PinUse) -> SettingsImage {
+        SettingsImage::default()
+    }
 
     /// How a pin stands now, in a sentence.
-    fn pin_state(&self, _unit: &UnitSettings, _pin: usize, _signal: Option<PinSignal>) -> Option<Message> {
+    fn pin_state(&self, _unit: &Looked<'_>, _pin: usize, _signal: Option<PinSignal>) -> Option<Message> {
         None
     }
 
@@ -191,21 +204,21 @@ pub trait Recipes: Sync {
     /// What the edits of a unit will do as soon as they are written, with how much it matters.
     fn consequences(
         &self,
-        _unit: &UnitSettings,
+        _unit: &Looked<'_>,
         _signal: &dyn Fn(usize) -> Option<PinSignal>,
     ) -> Vec<(IndicatorState, Message)> {
         Vec::new()
     }
 
-    /// The recipes that a controller can do, in the order of [`Job::ALL`]; none for a job that it has no setting for.
-    fn of(&self, table: &SettingsTable) -> Vec<(Job, Option<&'static Recipe>)> {
+    /// The recipes that a controller can do, in the order of [`Goal::ALL`]; none for a job that it has no setting for.
+    fn of(&self, table: &SettingsTable) -> Vec<(Goal, Option<&'static Recipe>)> {
         let encoder_pin = |motor, phase| self.encoder_pin(table, motor, phase);
         let is_for = |recipe: &&Recipe| {
             let able = recipe.pin_use().map(|wanted| self.able_pins(table, wanted)).unwrap_or_default();
             !self.lacks(table, recipe) && recipe.is_for(table, (self.motors(table), &able), &encoder_pin)
         };
         let found = |job| self.all().iter().filter(|recipe| recipe.job == job).find(is_for);
-        Job::ALL.into_iter().map(|job| (job, found(job))).collect()
+        Goal::ALL.into_iter().map(|job| (job, found(job))).collect()
     }
 }
 

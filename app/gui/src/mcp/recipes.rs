@@ -1,20 +1,21 @@
 //! The recipes of MCP and RoboClaw (MCP manual 1.9; RoboClaw manual 2018), and what their pins will do once edits are written.
 
 use brushwork_link::device::PinSignal;
-use brushwork_link::settings::{SettingValue, SettingsTable};
+use brushwork_link::settings::{SettingValue, SettingsImage, SettingsTable};
 use brushwork_link::{Channel, Message};
+use brushwork_mcp_client::messages::FindingMessage;
 use brushwork_mcp_client::model_of;
-use brushwork_mcp_client::settings::{Behind, PinMode};
+use brushwork_mcp_client::settings::{Behind, PinMode, SignalShape, change_mode};
 use brushwork_mcp_wire::packet_serial::status::StatusIndicator;
 
-use crate::family::recipe::{Ask, Job, Live, Part, PinUse, Recipe, Recipes, Set, To, Wiring};
+use crate::family::recipe::{Ask, Goal, Live, Looked, Part, PinUse, Recipe, Recipes, Set, To, Wiring};
 use crate::messages::PinMessage;
-use crate::model::{IndicatorState, UnitSettings};
+use crate::model::IndicatorState;
 
 /// Those of an MCP first: a recipe is offered where the controller has all of its settings.
 static RECIPES: &[Recipe] = &[
     Recipe {
-        job: Job::Home,
+        job: Goal::Home,
         text: "A contact at a known place of the axis. When it closes, the count becomes the home position. Wired to a pin that measures a voltage, \
                with a resistor of 10 kOhm to the other side.",
         consequence: "The count jumps whenever the contact closes, also in mid-move: home slowly, and from one side.",
@@ -32,7 +33,7 @@ static RECIPES: &[Recipe] = &[
         wiring: SWITCH_AT_PIN,
     },
     Recipe {
-        job: Job::Home,
+        job: Goal::Home,
         text: "A contact at a known place of the axis, between S4 (motor 1) or S5 (motor 2) and ground.",
         consequence: "While the contact is closed the motor does not go backward, and its count becomes 0.",
         asks: &[Ask::Motor],
@@ -43,7 +44,7 @@ static RECIPES: &[Recipe] = &[
         wiring: SWITCH_AT_S4,
     },
     Recipe {
-        job: Job::Limit,
+        job: Goal::Limit,
         text: "A contact at an end of the axis. Wired to a pin that measures a voltage, with a resistor of 10 kOhm to the other side.",
         consequence: "While the contact is closed the motor does not go on that way, and can go back.",
         asks: &[Ask::Pin(PinUse::Voltage), Ask::Contact, Ask::Motor, Ask::One("{way}", WAYS)],
@@ -54,7 +55,7 @@ static RECIPES: &[Recipe] = &[
         wiring: SWITCH_AT_PIN,
     },
     Recipe {
-        job: Job::Limit,
+        job: Goal::Limit,
         text: "A contact at an end of the axis, between S4 (motor 1) or S5 (motor 2) and ground.",
         consequence: "While the contact is closed the motor does not go on that way, and can go back.",
         asks: &[Ask::Motor, Ask::One("{way}", CLAW_WAYS)],
@@ -65,7 +66,7 @@ static RECIPES: &[Recipe] = &[
         wiring: SWITCH_AT_S4,
     },
     Recipe {
-        job: Job::EStop,
+        job: Goal::EStop,
         text: "A contact that stops both motors. Use one that is closed while all is well, so that a broken wire stops too. It is no safety \
                circuit: cut the power for that.",
         consequence: "Both motors stop while the contact is at that end, and stay stopped until the emergency stop is reset as chosen below.",
@@ -77,7 +78,7 @@ static RECIPES: &[Recipe] = &[
         wiring: SWITCH_AT_PIN,
     },
     Recipe {
-        job: Job::EStop,
+        job: Goal::EStop,
         text: "A contact between S3 and ground that stops both motors. It is no safety circuit: cut the power for that.",
         consequence: "Both motors stop while S3 is at ground; a latching stop stays until it is reset as chosen below.",
         asks: &[Ask::One("{kind}", STOPS)],
@@ -88,7 +89,7 @@ static RECIPES: &[Recipe] = &[
         wiring: Wiring { part: Part::Switch, wires: &[("contact", "S3"), ("contact", "GND")] },
     },
     Recipe {
-        job: Job::Stick,
+        job: Goal::Stick,
         text: "A channel of an R/C receiver, with pulses of 1 to 2 ms, to a pin that measures pulses.",
         consequence: "The stick drives the motor whenever no input of a higher priority level does: see the levels below. Put it in its middle first.",
         asks: &[Ask::Pin(PinUse::Pulses), Ask::Motor],
@@ -109,7 +110,7 @@ static RECIPES: &[Recipe] = &[
         },
     },
     Recipe {
-        job: Job::Stick,
+        job: Goal::Stick,
         text: "Two channels of an R/C receiver, with pulses of 1 to 2 ms, to S1 (motor 1) and S2 (motor 2).",
         consequence: CLAW_MODE,
         asks: &[],
@@ -123,7 +124,7 @@ static RECIPES: &[Recipe] = &[
         },
     },
     Recipe {
-        job: Job::Joystick,
+        job: Goal::Joystick,
         text: "A potentiometer of 5 to 20 kOhm over the controller's 5 V, its wiper to a pin that measures a voltage.",
         consequence: "The joystick drives the motor whenever no input of a higher priority level does: see the levels below. Put it in its middle first.",
         asks: &[Ask::Pin(PinUse::Voltage), Ask::Motor],
@@ -144,7 +145,7 @@ static RECIPES: &[Recipe] = &[
         },
     },
     Recipe {
-        job: Job::Joystick,
+        job: Goal::Joystick,
         text: "Two potentiometers of 5 to 20 kOhm over the controller's 5 V, their wipers to S1 (motor 1) and S2 (motor 2).",
         consequence: CLAW_MODE,
         asks: &[],
@@ -158,7 +159,7 @@ static RECIPES: &[Recipe] = &[
         },
     },
     Recipe {
-        job: Job::Encoder,
+        job: Goal::Encoder,
         text: "A quadrature encoder at the two pins that are made for it.",
         consequence: "The count starts at 0. Compare the two arrows under PWM Settings, Direction, before a loop is closed.",
         asks: &[Ask::Motor],
@@ -172,7 +173,7 @@ static RECIPES: &[Recipe] = &[
         wiring: ENCODER,
     },
     Recipe {
-        job: Job::Encoder,
+        job: Goal::Encoder,
         text: "A quadrature encoder counts lines; an absolute one is a voltage of 0 to 2 V or 5 V at the same terminals.",
         consequence: "An encoder of the wrong kind, or the wrong way round, makes a loop run away: compare the two arrows under PWM Settings, Direction.",
         asks: &[Ask::Motor, Ask::One("{kind}", ENCODERS)],
@@ -183,7 +184,7 @@ static RECIPES: &[Recipe] = &[
         wiring: ENCODER,
     },
     Recipe {
-        job: Job::Brake,
+        job: Goal::Brake,
         text: "An output that is on while the motor runs, so that a spring brake is lifted then: by a relay, with a diode across its coil.",
         consequence: "The brake falls as soon as the command is 0, before the load has come to rest. Try it without a load.",
         asks: &[Ask::One("{out}", OUTPUTS), Ask::Motor],
@@ -194,7 +195,7 @@ static RECIPES: &[Recipe] = &[
         wiring: Wiring { part: Part::Brake, wires: &[("coil", "DOUT{out}"), ("coil +", "supply +")] },
     },
     Recipe {
-        job: Job::Brake,
+        job: Goal::Brake,
         text: "S4 (motor 1) or S5 (motor 2) as an output that lifts a spring brake: by a relay, with a diode across its coil.",
         consequence: "The pin is no input any more: what was a home or limit switch there has no effect.",
         asks: &[Ask::Motor],
@@ -205,7 +206,7 @@ static RECIPES: &[Recipe] = &[
         wiring: BRAKE_AT_S4,
     },
     Recipe {
-        job: Job::Brake,
+        job: Goal::Brake,
         text: "CTRL1 (motor 1) or CTRL2 (motor 2), on boards that have them, lifts a spring brake: by a relay, with a diode across its coil.",
         consequence: "The output follows the motor at once. Try it without a load.",
         asks: &[Ask::Motor],
@@ -216,7 +217,7 @@ static RECIPES: &[Recipe] = &[
         wiring: Wiring { part: Part::Brake, wires: &[("coil", "CTRL{n}"), ("coil +", "supply +")] },
     },
     Recipe {
-        job: Job::Battery,
+        job: Goal::Battery,
         text: "The least and the greatest voltage at which the motors are driven. The least saves the battery, the greatest the controller while a \
                motor brakes into a supply that takes nothing back.",
         consequence: "Outside of these voltages the motors stop at once: compare with what the battery has now.",
@@ -233,7 +234,7 @@ static RECIPES: &[Recipe] = &[
         wiring: Wiring { part: Part::Battery, wires: &[("+", "B+"), ("-", "B-")] },
     },
     Recipe {
-        job: Job::TimeOut,
+        job: Goal::TimeOut,
         text: "How long a port may be silent before its commands count no more. It is what stops the motors when the computer dies or the cable \
                is pulled. 0 switches it off, and arming refuses then.",
         consequence: "A program that sends less often than this makes the motors stop between its commands.",
@@ -250,7 +251,7 @@ static RECIPES: &[Recipe] = &[
         wiring: COMPUTER,
     },
     Recipe {
-        job: Job::TimeOut,
+        job: Goal::TimeOut,
         text: "How long the line may be silent before the motors are stopped: by a dead computer or a pulled cable. 0 switches it off, and arming \
                refuses then.",
         consequence: "A program that sends less often than this makes the motors stop between its commands.",
@@ -262,7 +263,7 @@ static RECIPES: &[Recipe] = &[
         wiring: COMPUTER,
     },
     Recipe {
-        job: Job::Address,
+        job: Goal::Address,
         text: "Several controllers on one line each need an address of their own. Give it while a controller is alone on the line.",
         consequence: "The new address counts from the next command on. Once it is saved, label the board with it.",
         asks: &[],
@@ -279,7 +280,7 @@ static RECIPES: &[Recipe] = &[
         wiring: BUS,
     },
     Recipe {
-        job: Job::Address,
+        job: Goal::Address,
         text: "Several controllers on one line each need an address of their own, and their S2 as an open drain output with one pull-up resistor. Give \
                it while a controller is alone on the line.",
         consequence: "In the serial modes the address counts at once. Once it is saved, label the board with it.",
@@ -360,13 +361,20 @@ impl Recipes for McpRecipes {
         (place < table.subject().pins).then_some(place + 1)
     }
 
-    fn use_pin(&self, unit: &mut UnitSettings, pin: usize, wanted: PinUse) {
-        unit.set_pin_mode(pin, mode_for(wanted));
+    fn pin_use(&self, unit: &Looked<'_>, pin: usize, wanted: PinUse) -> SettingsImage {
+        let mode = match wanted {
+            PinUse::Voltage => PinMode::Analog,
+            PinUse::Pulses => PinMode::Pulse,
+        };
+        if PinMode::of(unit.wanted, pin) == Some(mode) {
+            return SettingsImage::default();
+        }
+        change_mode(unit.table, pin, mode, unit.is_simulated)
     }
 
-    fn pin_state(&self, unit: &UnitSettings, pin: usize, signal: Option<PinSignal>) -> Option<Message> {
-        let name = unit.table().subject().pin_name(pin.checked_sub(1)?);
-        let mode = unit.pin_mode_on_controller(pin)?;
+    fn pin_state(&self, unit: &Looked<'_>, pin: usize, signal: Option<PinSignal>) -> Option<Message> {
+        let name = unit.table.subject().pin_name(pin.checked_sub(1)?);
+        let mode = PinMode::of(unit.held, pin)?;
         let Some(reading) = reading(unit, pin, signal) else {
             return Some(PinMessage::Unread { pin: name }.into());
         };
@@ -392,10 +400,10 @@ impl Recipes for McpRecipes {
 
     fn consequences(
         &self,
-        unit: &UnitSettings,
+        unit: &Looked<'_>,
         signal: &dyn Fn(usize) -> Option<PinSignal>,
     ) -> Vec<(IndicatorState, Message)> {
-        let pins = 1..=unit.table().subject().pins;
+        let pins = 1..=unit.table.subject().pins;
         pins.flat_map(|pin| ["min", "max"].map(|end| consequence(unit, pin, end, signal(pin))))
             .flatten()
             .collect()
@@ -406,17 +414,11 @@ impl Recipes for McpRecipes {
 const CLOSED_BELOW: f64 = 1000.0;
 const CLOSED_ABOVE: f64 = 3000.0;
 
-const fn mode_for(wanted: PinUse) -> PinMode {
-    match wanted {
-        PinUse::Voltage => PinMode::Analog,
-        PinUse::Pulses => PinMode::Pulse,
-    }
-}
-
 /// The reading behind a signal, as far as it tells.
-fn reading(unit: &UnitSettings, pin: usize, signal: Option<PinSignal>) -> Option<f64> {
-    let held = |end: &str| number(&|key| unit.on_controller(key), pin, end);
-    match unit.reading(pin, signal?)? {
+fn reading(unit: &Looked<'_>, pin: usize, signal: Option<PinSignal>) -> Option<f64> {
+    let held = |end: &str| number(unit.held, pin, end);
+    PinMode::of(unit.held, pin).filter(|mode| *mode != PinMode::None)?;
+    match SignalShape::of(unit.held, pin)?.behind(f64::from(signal?.position)) {
         Behind::Reading(reading) => Some(reading),
         Behind::Deadband => held("center"),
         Behind::LowEnd => held("min"),
@@ -431,24 +433,25 @@ fn number(get: &dyn Fn(&str) -> Option<SettingValue>, pin: usize, field: &str) -
 
 /// What the action at an end of a pin will do, where it or what triggers it was edited.
 fn consequence(
-    unit: &UnitSettings,
+    unit: &Looked<'_>,
     pin: usize,
     end: &'static str,
     signal: Option<PinSignal>,
 ) -> Option<(IndicatorState, Message)> {
     let key = |field: &str| format!("pin.{pin}.{field}");
-    let action = unit.wanted(&key(&format!("{end}_action")))?.choice().filter(|action| *action != "none")?;
-    let is_edited = |field: &str| unit.edits().get(&key(field)).is_some();
+    let action =
+        (unit.wanted)(&key(&format!("{end}_action")))?.choice().filter(|action| *action != "none")?;
+    let is_edited = |field: &str| (unit.wanted)(&key(field)) != (unit.held)(&key(field));
     let action_field = format!("{end}_action");
     let is_new = [action_field.as_str(), "type", "digital", end, "load_home"].into_iter().any(is_edited);
-    let mode = unit.pin_mode(pin).filter(|mode| *mode != PinMode::None)?;
-    let (what, name) = (what(unit, pin, action)?, unit.table().subject().pin_name(pin - 1));
+    let mode = PinMode::of(unit.wanted, pin).filter(|mode| *mode != PinMode::None)?;
+    let (what, name) = (what(unit, pin, action)?, unit.table.subject().pin_name(pin - 1));
     let end_text = if end == "min" { "low end" } else { "high end" };
     if !is_new {
         return None;
     }
-    let wanted = number(&|key| unit.wanted(key), pin, end)?;
-    let stands_there = match unit.pin_mode_on_controller(pin) {
+    let wanted = number(unit.wanted, pin, end)?;
+    let stands_there = match PinMode::of(unit.held, pin) {
         // A pin in another mode reads in other units.
         Some(now) if now == mode => reading(unit, pin, signal).map(|reading| match end {
             "min" => reading <= wanted,
@@ -464,14 +467,14 @@ fn consequence(
 }
 
 /// What an action does, as a clause.
-fn what(unit: &UnitSettings, pin: usize, action: &str) -> Option<Message> {
+fn what(unit: &Looked<'_>, pin: usize, action: &str) -> Option<Message> {
     let (which, effect) = match action.split_once('_') {
-        Some(("m1", effect)) => (PinMessage::MotorOne.into(), effect),
-        Some(("m2", effect)) => (PinMessage::MotorTwo.into(), effect),
-        Some(("both", effect)) => (PinMessage::BothMotors.into(), effect),
+        Some(("m1", effect)) => (FindingMessage::OneMotor { motor: 1 }.into(), effect),
+        Some(("m2", effect)) => (FindingMessage::OneMotor { motor: 2 }.into(), effect),
+        Some(("both", effect)) => (FindingMessage::BothMotors.into(), effect),
         _ => (Message::default(), action),
     };
-    let home = number(&|key| unit.wanted(key), pin, "load_home").unwrap_or_default();
+    let home = number(unit.wanted, pin, "load_home").unwrap_or_default();
     Some(match effect {
         "safe_stop" => PinMessage::Stops { which }.into(),
         "off" => PinMessage::Coasts { which }.into(),

@@ -27,7 +27,7 @@ pub struct OpenFiles {
     /// The backups of every unit, once they were asked for.
     pub backups: Option<Vec<Backup>>,
     /// What was noted of each unit, by the name that its backups have.
-    pub notes: BTreeMap<String, String>,
+    pub noted: BTreeMap<String, String>,
 }
 
 /// Settings from a profile or a backup.

@@ -21,7 +21,7 @@ impl Connection {
                 screens.contains(&screen) && self.family().tabs(screen).contains(&tab)
             }
             Place::Settings(groups) => self.first_row_of(groups).is_some(),
-            Place::Save | Place::BackUp => true,
+            Place::Recipe(_) | Place::Save | Place::BackUp => true,
         };
         self.family().path().iter().filter(is_there).map(|step| self.judged(*step)).collect()
     }

@@ -33,7 +33,7 @@ pub fn settings_file_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands)
         Some(file) => close = file_ui(ui, file, has_backups),
         None => {
             if let Some(backups) = &model.files.backups {
-                backups_ui(ui, backups, &model.files.notes, commands);
+                backups_ui(ui, backups, &model.files.noted, commands);
             }
         }
     }

@@ -2,8 +2,8 @@
 //! screen; where it never was moved the graph has all that the screen leaves.
 
 use egui::{
-    CursorIcon, EventFilter, Key, Rect, Response, Role, ScrollArea, Sense, Stroke, Ui, UiBuilder, WidgetInfo,
-    pos2, vec2,
+    CursorIcon, EventFilter, Id, Key, Rect, Response, Role, ScrollArea, Sense, Stroke, Ui, UiBuilder,
+    WidgetInfo, pos2, vec2,
 };
 
 use super::graph_place::graph_place_ui;
@@ -22,6 +22,8 @@ const LEAST_LONG: f32 = 150.0;
 const BAR_HEIGHT: f32 = 8.0;
 /// Room for the line that says that the graph is elsewhere.
 const DETACHED_HEIGHT: f32 = 40.0;
+/// Between the two clicks of a double click.
+const DOUBLE_CLICK_S: f64 = 0.6;
 /// What an arrow key moves the bar by.
 const KEY_STEP: f32 = 0.02;
 
@@ -98,7 +100,10 @@ impl Split {
 fn bar_ui(ui: &mut Ui, split: &Split, model: &mut Model) {
     ui.spacing_mut().item_spacing.y = 0.0;
     let size = vec2(ui.available_width(), BAR_HEIGHT);
-    let (place, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+    let (_, place) = ui.allocate_space(size);
+    // A name of its own: what stands above changes with the first pixel that it is moved by, and a hand or the keyboard has to keep it.
+    let id = Id::unique(("bar above the graph", split.screen as usize));
+    let response = ui.interact(place, id, Sense::click_and_drag());
     let part = (split.bottom - place.bottom()) / split.height;
     let response = response.on_hover_cursor(CursorIcon::ResizeVertical);
     response.widget_info(|| {
@@ -109,7 +114,7 @@ fn bar_ui(ui: &mut Ui, split: &Split, model: &mut Model) {
     let least = (LEAST_GRAPH_HEIGHT / split.height).min(1.0);
     let most = (1.0 - (LEAST_ABOVE + BAR_HEIGHT) / split.height).max(least);
     let is_reset = response.has_focus() && ui.input(|input| input.key_pressed(Key::Home));
-    if is_reset || response.double_clicked() {
+    if is_reset || is_double_click(ui, &response) {
         model.layout.set_graph_part(split.screen, None);
     } else if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
         let wanted = (split.bottom - pointer.y - BAR_HEIGHT * 0.5) / split.height;
@@ -121,6 +126,19 @@ fn bar_ui(ui: &mut Ui, split: &Split, model: &mut Model) {
     response.on_hover_text(
         "Drag, or move by the arrow keys; a double click or Home brings back the usual height",
     );
+}
+
+/// Whether the bar is clicked for the second time. A window that is drawn ten times a second sees a click late: it is given more time than a
+/// button.
+fn is_double_click(ui: &Ui, response: &Response) -> bool {
+    if !response.clicked() {
+        return false;
+    }
+    let (now_s, key) = (ui.input(|input| input.time), response.id.with("clicked"));
+    let before = ui.data(|data| data.get_temp::<f64>(key));
+    let is_second = before.is_some_and(|before| now_s - before <= DOUBLE_CLICK_S);
+    ui.data_mut(|data| data.insert_temp(key, if is_second { f64::NEG_INFINITY } else { now_s }));
+    is_second
 }
 
 /// How often up was pressed, less how often down was.

@@ -7,6 +7,7 @@ use egui::{
 
 use super::{Loop, TuneAction, Tuning, plots, result, setup};
 use crate::command::{Command, Commands};
+use crate::focus::{Region, region_ui};
 use crate::model::Model;
 use crate::theme::Palette;
 
@@ -47,6 +48,7 @@ pub fn guide_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 
 /// What the runs have found, with its picture: it needs no controller.
 pub fn found_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands) {
+    region_ui(ui, Region::Result);
     let room = ui.available_rect_before_wrap();
     if room.width() < SIDE_BY_SIDE {
         ScrollArea::vertical().id_salt("tune").auto_shrink(false).show(ui, |ui| {

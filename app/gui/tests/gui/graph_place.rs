@@ -101,8 +101,10 @@ fn the_bar_is_dragged_and_moved_by_keys_and_each_screen_keeps_its_own() {
     let from = bar(&bench).expect("a bar").center();
     bench.harness.drag_at(from);
     bench.pass_ms(100);
-    bench.harness.hover_at(from - vec2(0.0, 60.0));
-    bench.pass_ms(100);
+    for way in [20.0, 40.0, 60.0] {
+        bench.harness.hover_at(from - vec2(0.0, way));
+        bench.pass_ms(100);
+    }
     bench.harness.drop_at(from - vec2(0.0, 60.0));
     bench.pass_ms(200);
     assert!((graph_height(&bench) - at_first - 60.0).abs() < 3.0, "{at_first} {}", graph_height(&bench));
@@ -122,6 +124,32 @@ fn the_bar_is_dragged_and_moved_by_keys_and_each_screen_keeps_its_own() {
     bench.key(Key::Home);
     bench.pass_ms(300);
     assert!((graph_height(&bench) - at_first).abs() < 1.0, "as at first: {}", graph_height(&bench));
+}
+
+#[test]
+fn a_double_click_on_the_bar_brings_back_the_usual_height_and_two_slow_clicks_do_not() {
+    let mut bench = Bench::new();
+    bench.connect();
+    bench.press("Velocity Settings");
+    bench.pass_ms(500);
+    let at_first = graph_height(&bench);
+    splitter(&bench).expect("a bar").focus();
+    bench.pass_ms(200);
+    for _ in 0..5 {
+        bench.key(Key::ArrowUp);
+    }
+    bench.pass_ms(200);
+    let moved = graph_height(&bench);
+    assert!(moved > at_first + 20.0, "{at_first} {moved}");
+    for (between_ms, is_reset) in [(1500, false), (300, true)] {
+        splitter(&bench).expect("a bar").click();
+        bench.pass_ms(between_ms);
+        splitter(&bench).expect("a bar").click();
+        bench.pass_ms(300);
+        let now = graph_height(&bench);
+        assert_eq!((now - at_first).abs() < 1.0, is_reset, "{between_ms} ms apart: {at_first} {moved} {now}");
+        bench.pass_ms(1500);
+    }
 }
 
 #[test]

@@ -420,3 +420,51 @@ fn edits_made_while_a_write_runs_stay() {
     assert_eq!(edits(&mut bench), 1);
     assert!(bench.sees("Edits: 1 not written"));
 }
+
+#[test]
+fn notes_on_a_unit_are_kept_beside_its_backups_and_are_there_again() {
+    let mut bench = Bench::new();
+    bench.connect();
+    bench.pass_ms(3000);
+    bench.press("General Settings");
+    bench.pass_ms(1000);
+    bench.press("Backups");
+    bench.harness.get_by_label("Notes on this unit").focus();
+    bench.pass_ms(200);
+    bench.harness.get_by_label("Notes on this unit").type_text("Left arm, gearbox replaced in May");
+    bench.pass_ms(300);
+    bench.press("Disconnect");
+    bench.pass_ms(1000);
+    bench.connect();
+    bench.pass_ms(3000);
+    assert_eq!(bench.model().front.settings.notes_mut(), "Left arm, gearbox replaced in May");
+}
+
+#[test]
+fn a_value_and_a_row_are_copied_from_the_explanation() {
+    let mut bench = Bench::new();
+    bench.connect();
+    bench.pass_ms(3000);
+    bench.press("General Settings");
+    bench.pass_ms(1000);
+    bench.press("Section Voltage limits");
+    bench.model().front.general.explained = Some("limits.main_battery.max_volts".to_owned());
+    bench.pass_ms(200);
+    let copied = |bench: &mut Bench, name: &str| {
+        bench.button(name).click();
+        bench.harness.step();
+        let commands = bench.harness.output().platform_output.commands.clone();
+        commands.into_iter().find_map(|command| match command {
+            egui::OutputCommand::CopyText(text) => Some(text),
+            _ => None,
+        })
+    };
+    let value = copied(&mut bench, "Copy value").expect("it is copied");
+    assert!(value.ends_with(" V"), "{value}");
+    let row = copied(&mut bench, "Copy row").expect("it is copied");
+    let cells: Vec<&str> = row.split('\t').collect();
+    assert_eq!(
+        (cells[0], cells[1], cells[4]),
+        ("Main battery maximum", value.as_str(), "limits.main_battery.max_volts")
+    );
+}

@@ -177,3 +177,93 @@ fn every_screen_has_a_key_and_the_panels_too() {
     bench.key_with(Modifiers::COMMAND, Key::B);
     assert!(bench.model().front.world.open);
 }
+
+#[test]
+fn after_a_click_no_ring_stands_round_the_heading_and_after_a_key_one_does() {
+    let mut bench = connected();
+    let shows = |bench: &Bench| brushwork_gui::focus::shows_ring(&bench.harness.ctx);
+    bench.press("Velocity Settings");
+    bench.pass_ms(300);
+    assert_eq!(focused(&bench).as_deref(), Some("Velocity Settings"), "the keyboard is there all the same");
+    assert!(!shows(&bench));
+    bench.key_with(Modifiers::COMMAND, Key::Num3);
+    bench.pass_ms(300);
+    assert_eq!(focused(&bench).as_deref(), Some("PWM Settings"));
+    assert!(shows(&bench));
+}
+
+#[test]
+fn edits_are_taken_back_and_done_again_by_keys_step_by_step() {
+    let mut bench = connected();
+    bench.key_with(Modifiers::COMMAND, Key::Num2);
+    bench.pass_ms(3_000);
+    press(&mut bench, "Section Voltage limits");
+    enter(&mut bench, "Main battery maximum", "30");
+    enter(&mut bench, "Main battery maximum", "29");
+    let wanted = |bench: &mut Bench| {
+        let unit = bench.model().front.settings.unit().expect("it is there");
+        unit.edits().get("limits.main_battery.max_volts").and_then(brushwork_link::SettingValue::number)
+    };
+    assert_eq!(wanted(&mut bench), Some(29.0));
+    // A field for text keeps these keys for itself.
+    press(&mut bench, "Section Current limits");
+    bench.key_with(Modifiers::COMMAND, Key::Z);
+    assert_eq!(wanted(&mut bench), Some(30.0));
+    bench.key_with(Modifiers::COMMAND, Key::Z);
+    assert_eq!(wanted(&mut bench), None);
+    bench.key_with(Modifiers::COMMAND, Key::Y);
+    assert_eq!(wanted(&mut bench), Some(30.0));
+    press(&mut bench, "Undo edit of settings");
+    assert_eq!(wanted(&mut bench), None);
+    press(&mut bench, "Redo edit of settings");
+    press(&mut bench, "Write settings");
+    press(&mut bench, "Write to controller");
+    bench.pass_ms(3_000);
+    let unit = bench.model().front.settings.unit().expect("it is there");
+    assert!(!unit.can_undo() && !unit.can_redo(), "what was written is not gone back behind");
+}
+
+/// Keys from the opening of a screen to a button, with F6 for each region that is passed over.
+fn keys_to(bench: &mut Bench, regions: usize, name: &str, most_tabs: usize) -> usize {
+    for _ in 0..regions {
+        bench.key(Key::F6);
+    }
+    for tabs in 0..=most_tabs {
+        if focused(bench).is_some_and(|label| label == name) {
+            return regions + tabs;
+        }
+        bench.key(Key::Tab);
+    }
+    panic!("{name:?} is further than {most_tabs} times Tab from region {regions}: {:?}", focused(bench));
+}
+
+#[test]
+fn apply_and_write_are_within_eight_keys_of_their_screens() {
+    let mut bench = connected();
+    let report = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/reports/tuned.json");
+    let report = brushwork_core::tune::file::read(std::path::Path::new(report)).expect("a report");
+    let which = brushwork_gui::tune::files::loop_of(&report);
+    bench.model().front.tune.panel_mut(which, Motor::M1).add(report);
+    let screen = if which.screen() == Screen::Velocity { Key::Num4 } else { Key::Num5 };
+    bench.key_with(Modifiers::COMMAND, screen);
+    bench.open_tab("Tune");
+    bench.key_with(Modifiers::COMMAND, Key::Num1);
+    bench.pass_ms(500);
+    bench.key_with(Modifiers::COMMAND, screen);
+    bench.pass_ms(500);
+    let keys = 1 + keys_to(&mut bench, 2, "Apply (RAM)", 6) + 1;
+    println!("Apply: {keys} keys");
+    assert!(keys <= 8, "{keys}");
+    bench.key_with(Modifiers::COMMAND, Key::Num2);
+    bench.pass_ms(3_000);
+    press(&mut bench, "Section Voltage limits");
+    enter(&mut bench, "Main battery maximum", "30");
+    // F9 opens the sheet, Enter presses its first button.
+    bench.key(Key::F9);
+    bench.pass_ms(300);
+    assert_eq!(focused(&bench).as_deref(), Some("Write to controller"));
+    bench.key(Key::Enter);
+    bench.pass_ms(3_000);
+    let max = bench.line.with(|bus| bus.controllers()[0].settings().battery.main_max_tenths);
+    assert_eq!(max, 300);
+}

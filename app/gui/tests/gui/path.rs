@@ -20,6 +20,7 @@ use brushwork_plant::presets;
 use brushwork_plant::world::WorldAction;
 use brushwork_values::Motor;
 use egui::accesskit::Role;
+use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
 /// What the first hour may take at most.
@@ -148,6 +149,125 @@ fn from_an_empty_start_to_a_tuned_and_saved_axis_by_mouse_alone() {
     assert!(took < MOST_TIME, "{took:?}");
     let (velocity, position) = stored(&hand.bench, Motor::M1);
     assert!(velocity != stored(&hand.bench, Motor::M2).0 && position != 0, "{velocity} {position}");
+}
+
+/// Fingers that count their keys.
+struct Fingers {
+    bench: Bench,
+    keys: usize,
+}
+
+impl Fingers {
+    fn focused(&self) -> Option<String> {
+        let mut nodes = self.bench.harness.root().children_recursive();
+        nodes.find(|node| node.accesskit_node().is_focused())?.accesskit_node().label()
+    }
+
+    fn key(&mut self, key: Key) {
+        self.bench.key(key);
+        self.keys += 1;
+    }
+
+    fn with_ctrl(&mut self, key: Key) {
+        self.bench.key_with(Modifiers::COMMAND, key);
+        self.bench.pass_ms(300);
+        self.keys += 1;
+    }
+
+    /// Goes on to a button by so many regions and then from one thing to the next.
+    #[track_caller]
+    fn go_to(&mut self, regions: usize, name: &str) {
+        for _ in 0..regions {
+            self.key(Key::F6);
+        }
+        for _ in 0..60 {
+            if self.focused().is_some_and(|label| label == name) {
+                return;
+            }
+            self.key(Key::Tab);
+        }
+        panic!("{name:?} is not reached, only {:?}", self.focused());
+    }
+
+    #[track_caller]
+    fn press(&mut self, regions: usize, name: &str) {
+        self.go_to(regions, name);
+        self.key(Key::Enter);
+        self.bench.pass_ms(500);
+    }
+
+    /// Arms the open screen.
+    fn arm(&mut self) {
+        self.bench.key_with(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::A);
+        self.bench.pass_ms(600);
+        self.keys += 1;
+    }
+
+    /// Holds Enter down.
+    fn hold(&mut self, time: Duration) {
+        self.bench.harness.key_down(Key::Enter);
+        self.bench.pass(time);
+        self.bench.harness.key_up(Key::Enter);
+        self.bench.pass_ms(1500);
+        self.keys += 1;
+    }
+}
+
+/// What the first hour may take in keys: by mouse it is one click for each of these acts, by keys the way to each comes first.
+const MOST_KEYS: usize = 120;
+
+#[test]
+fn from_an_empty_start_to_a_tuned_and_saved_axis_by_keys_alone() {
+    let mut hand = Fingers { bench: empty_start(), keys: 0 };
+    let began = hand.bench.line.clock.now();
+    hand.bench.pass_ms(300);
+    hand.press(2, "Open MCP266");
+    hand.bench.pass_ms(4000);
+    hand.press(1, "Leave it out");
+    assert_eq!(standing(&mut hand.bench, Step::Limits), Standing::NotNeeded);
+    hand.press(0, "Go to PWM Settings: Direction");
+    hand.arm();
+    hand.go_to(1, "M1 jog forward");
+    hand.hold(Duration::from_secs(2));
+    hand.with_ctrl(Key::Num1);
+    assert_eq!(standing(&mut hand.bench, Step::Direction), Standing::Done, "{:?}", hand.bench.said());
+    for (go, step) in
+        [("Go to Velocity Settings: Tune", Step::Velocity), ("Go to Position Settings: Tune", Step::Position)]
+    {
+        hand.press(1, go);
+        hand.arm();
+        hand.press(1, "Tune M1");
+        for _ in 0..120 {
+            hand.bench.pass_ms(500);
+            if !hand.bench.model().front.tune.is_running() {
+                break;
+            }
+        }
+        hand.bench.pass_ms(1500);
+        hand.press(1, "Apply (RAM)");
+        hand.bench.pass_ms(3000);
+        hand.with_ctrl(Key::Num1);
+        hand.bench.pass_ms(2000);
+        assert_eq!(standing(&mut hand.bench, step), Standing::Done, "{:?}", hand.bench.said());
+    }
+    hand.key(Key::F10);
+    hand.bench.pass_ms(500);
+    hand.key(Key::Enter);
+    hand.bench.pass_ms(10_000);
+    hand.with_ctrl(Key::Num1);
+    hand.bench.pass_ms(1000);
+    assert_eq!(standing(&mut hand.bench, Step::Save), Standing::Done, "{:?}", hand.bench.said());
+    if standing(&mut hand.bench, Step::BackUp) != Standing::Done {
+        hand.press(1, "Back up now");
+        hand.bench.pass_ms(1000);
+    }
+    let left: Vec<_> =
+        standings(&mut hand.bench).into_iter().filter(|(_, standing)| standing.is_open()).collect();
+    assert!(left.is_empty(), "{left:?}");
+    let took = hand.bench.line.clock.now() - began;
+    println!("by keys: {} keys, {:.0} s", hand.keys, took.as_secs_f64());
+    assert!(hand.keys < MOST_KEYS, "{} keys", hand.keys);
+    assert!(took < MOST_TIME, "{took:?}");
 }
 
 #[test]

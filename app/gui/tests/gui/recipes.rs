@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use brushwork_gui::family::recipe::{Job, Live, Recipe, Recipes as _};
+use brushwork_gui::family::recipe::{Goal, Live, Recipe, Recipes as _};
 use brushwork_gui::family::{self, Family as _};
 use brushwork_gui::mcp::Mcp;
 use brushwork_gui::mcp::recipes::McpRecipes;
@@ -18,14 +18,14 @@ use egui_kittest::kittest::Queryable as _;
 use crate::support::bench::Bench;
 
 /// What a controller has no setting for, by its kind and generation.
-fn cannot(model: &Model, generation: Generation, job: Job) -> bool {
+fn cannot(model: &Model, generation: Generation, job: Goal) -> bool {
     let is_early = matches!(generation, Generation::Gen1 | Generation::Gen2);
     let has_inputs = model.control_pins.contains(&"S4");
     match (model.family, job) {
-        (Family::RoboClaw, Job::Home) => !has_inputs,
-        (Family::RoboClaw, Job::Limit) => is_early || !has_inputs,
-        (Family::RoboClaw, Job::Brake) => generation == Generation::Gen1 || !has_inputs,
-        (Family::RoboClaw, Job::TimeOut) => generation == Generation::Gen1,
+        (Family::RoboClaw, Goal::Home) => !has_inputs,
+        (Family::RoboClaw, Goal::Limit) => is_early || !has_inputs,
+        (Family::RoboClaw, Goal::Brake) => generation == Generation::Gen1 || !has_inputs,
+        (Family::RoboClaw, Goal::TimeOut) => generation == Generation::Gen1,
         _ => false,
     }
 }
@@ -117,6 +117,9 @@ fn the_pins_the_encoders_and_the_next_step_lead_to_their_recipes() {
     bench.press("Section Encoders");
     bench.press("Recipe: Encoder");
     assert!(bench.sees_part("Wiring: Encoder, A to ENC1A"));
+    // It stands below what the list shows.
+    bench.button("Section DIN4/AN4/P4").scroll_to_me();
+    bench.pass_ms(600);
     bench.press("Section DIN4/AN4/P4");
     bench.press("Recipes…");
     assert_eq!(chosen_pin(&mut bench), 4);
@@ -194,7 +197,7 @@ fn every_recipe_can_be_looked_at_and_sets_edits_and_nothing_else() {
         let unit = Controller::new(config).expect("the configuration is sound");
         let mut bench = on_recipes(Bench::of_sized(unit, [1024.0, 700.0], Theme::Light));
         let mut set = 0;
-        for job in Job::ALL {
+        for job in Goal::ALL {
             bench.press(job.title());
             bench.pass_ms(300);
             if bench.harness.query_by_label("Make these the wanted settings").is_some() {

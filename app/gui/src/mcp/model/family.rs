@@ -19,7 +19,7 @@ use brushwork_values::{Code, Motor};
 use super::diagnosis::ends;
 use super::{McpConnection, script};
 use crate::family::path::{BACK_UP, PathStep, Place, SAVE, ShownBy, Step};
-use crate::family::recipe::{Job, Recipes};
+use crate::family::recipe::{Goal, Recipes};
 use crate::family::{Ability, ActiveIndicator, Family, Figure, Figures, Known, Own, Sliders};
 use crate::mcp::recipes::McpRecipes;
 use crate::model::{HelpPage, IndicatorInfo, IndicatorState, Screen, Tab, state_of};
@@ -271,7 +271,7 @@ const PATH: &[PathStep] = &[
         place: Place::Drawer(Screen::Pwm, Tab::Direction),
     },
     PathStep { step: Step::Encoder, shown_by: ShownBy::Counting, place: Place::Settings(&["Encoders"]) },
-    PathStep { step: Step::Switches, shown_by: ShownBy::Switches, place: Place::Recipe(Job::Home) },
+    PathStep { step: Step::Switches, shown_by: ShownBy::Switches, place: Place::Recipe(Goal::Home) },
     PathStep {
         step: Step::Velocity,
         shown_by: ShownBy::Settings(&["motor{n}.velocity.p", "motor{n}.velocity.i", "motor{n}.velocity.d"]),

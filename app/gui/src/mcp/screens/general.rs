@@ -7,7 +7,7 @@ use egui::{Ui, vec2};
 
 use super::{clamp, conflicts, pin};
 use crate::command::Commands;
-use crate::family::recipe::Job;
+use crate::family::recipe::Goal;
 use crate::model::{GeneralView, IndicatorState, Model, Section, UnitSettings};
 use crate::screens::general::rows::{HEIGHT, MARK_WIDTH};
 use crate::screens::general::sheet_parts::indicator_ui;
@@ -59,7 +59,7 @@ fn encoder_ui(ui: &mut Ui, general: &mut GeneralView<'_>) {
         .on_hover_text("Its kind, its pins, its wiring, and where it stands")
         .clicked()
     {
-        general.recipes.job = Job::Encoder;
+        general.recipes.job = Goal::Encoder;
         general.turn_to(Section::Recipes);
     }
 }

@@ -6,7 +6,7 @@ use super::compare::Comparing;
 use super::profile::Profiles;
 use super::section::Section;
 use super::sheet::Sheet;
-use crate::family::recipe::{Answers, Job};
+use crate::family::recipe::{Answers, Goal};
 
 /// The state of the screen.
 #[derive(Debug, Default)]
@@ -38,13 +38,13 @@ pub struct General {
 /// Which recipe is looked at, and what was chosen of all that recipes ask for.
 #[derive(Clone, Debug)]
 pub struct RecipeChoice {
-    pub job: Job,
+    pub job: Goal,
     pub answers: Answers,
 }
 
 impl Default for RecipeChoice {
     fn default() -> Self {
-        Self { job: Job::Home, answers: Answers::default() }
+        Self { job: Goal::Home, answers: Answers::default() }
     }
 }
 

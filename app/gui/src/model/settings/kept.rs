@@ -27,6 +27,9 @@ pub(super) struct Kept {
     /// EEPROM as it was proven last, in this session or an earlier one.
     eeprom: Option<Profile>,
     wear: Wear,
+    /// What is noted of it, as it stands in the field, and as it is kept.
+    noted: String,
+    noted_kept: String,
     /// Why it is not known how often the EEPROM was written.
     wear_fault: Option<Message>,
     /// Journals that cannot be read.
@@ -82,6 +85,16 @@ impl Kept {
         }
     }
 
+    /// Keeps what stands in the field for notes, if it is new.
+    fn keep_notes(&mut self) {
+        let (Some(keeping), Some(unit)) = (self.keeping.clone(), self.unit.clone()) else { return };
+        if self.noted != self.noted_kept
+            && self.told(keeping.store().keep_notes(&unit, &self.noted)).is_some()
+        {
+            self.noted_kept = self.noted.clone();
+        }
+    }
+
     /// What was read, or the sentence why not, to be said.
     fn told<T>(&mut self, read: Result<T, KeepError>) -> Option<T> {
         match read {
@@ -106,6 +119,9 @@ impl Kept {
     }
 
     pub(super) fn forget_unit(&mut self) {
+        self.keep_notes();
+        self.noted.clear();
+        self.noted_kept.clear();
         self.unit = None;
         self.unfinished.clear();
         self.damaged.clear();

@@ -3,6 +3,7 @@
 mod applicable;
 mod kept;
 mod outcome;
+mod steps;
 mod summary;
 mod unit;
 mod unit_key;

@@ -15,7 +15,9 @@ use brushwork_link::transport::Stream;
 use brushwork_link::{Message, UnitAddress};
 
 use super::applicable;
+use super::steps::{Steps, Wishes};
 use crate::family;
+use crate::family::recipe::Looked;
 
 /// The settings of one unit.
 #[derive(Debug)]
@@ -43,6 +45,7 @@ pub struct UnitSettings {
     is_read: bool,
     /// What the backup of the next of a series of small writes is made from.
     pub(super) known: Known,
+    steps: Steps,
     revision: u64,
 }
 
@@ -101,6 +104,7 @@ impl UnitSettings {
             was_asked: false,
             is_read: false,
             known: Known::default(),
+            steps: Steps::default(),
             revision: 0,
         }
     }
@@ -112,6 +116,36 @@ impl UnitSettings {
 
     fn changed(&mut self) {
         self.revision += 1;
+    }
+
+    fn wishes(&self) -> Wishes {
+        Wishes { edits: self.edits.clone(), taken: self.taken.clone() }
+    }
+
+    /// Looks once a frame whether the edits were changed: whatever changed them since the last look is one step.
+    pub fn note_step(&mut self) {
+        if self.steps.looked_at != self.revision {
+            self.steps.note(self.revision, self.wishes());
+        }
+    }
+
+    pub fn can_undo(&self) -> bool {
+        self.steps.can_undo()
+    }
+
+    pub fn can_redo(&self) -> bool {
+        self.steps.can_redo()
+    }
+
+    /// Takes the last step of the edits back, or does the last one that was taken back again.
+    pub fn step_back(&mut self, again: bool) {
+        self.note_step();
+        if let Some(wishes) = self.steps.go(again) {
+            (self.edits, self.taken) = (wishes.edits, wishes.taken);
+            self.typed.clear();
+            self.changed();
+            self.steps.looked_at = self.revision;
+        }
     }
 
     pub fn table(&self) -> &SettingsTable {
@@ -147,6 +181,12 @@ impl UnitSettings {
     pub(super) fn at(self, address: u8) -> Self {
         let unit_address = UnitAddress::new(self.unit_address.family(), address).unwrap_or(self.unit_address);
         Self { unit_address, ..self }
+    }
+
+    /// Lets a recipe look at the settings.
+    pub fn look<R>(&self, look: impl FnOnce(&Looked<'_>) -> R) -> R {
+        let (held, wanted) = (|key: &str| self.on_controller(key), |key: &str| self.wanted(key));
+        look(&Looked { table: &self.table, held: &held, wanted: &wanted, is_simulated: self.is_simulated })
     }
 
     /// Whether the controller's settings were read.
@@ -467,8 +507,17 @@ impl UnitSettings {
         self.drop_fulfilled();
     }
 
-    /// An edit that the controller has come to hold is none any more.
+    /// An edit that the controller has come to hold is none any more. What the controller does is no step of a person's, and nothing
+    /// before it is gone back to.
     fn drop_fulfilled(&mut self) {
+        let before = self.edits.len();
+        self.drop_held();
+        if self.edits.len() != before || self.steps.differs(&self.wishes()) {
+            self.steps = Steps::new(self.revision, self.wishes());
+        }
+    }
+
+    fn drop_held(&mut self) {
         self.changed();
         let fulfilled: Vec<String> = self
             .edits

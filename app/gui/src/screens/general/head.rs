@@ -153,6 +153,16 @@ fn filter_ui(ui: &mut Ui, general: &mut GeneralView<'_>, words: &SettingsWords, 
         {
             unit.revert_all();
         }
+        for (text, again) in [("Undo", false), ("Redo", true)] {
+            let can =
+                general.unit().is_some_and(|unit| if again { unit.can_redo() } else { unit.can_undo() });
+            let response = ui.add_enabled(can, Button::new(text));
+            let spoken = format!("{text} edit of settings");
+            response.widget_info(|| WidgetInfo::labeled(Role::Button, can, &spoken));
+            if response.on_hover_text(format!("{text} the last edit of the settings")).clicked() {
+                commands.push(Command::StepSettings { again });
+            }
+        }
         match general.settings.running() {
             Some(running) => running_ui(ui, running, commands),
             None => idle_ui(ui, general, words.many),

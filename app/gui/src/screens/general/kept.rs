@@ -2,10 +2,15 @@
 
 use brushwork_link::Message;
 use brushwork_link::settings::{Aftermath, Difference, Held, Row};
-use egui::{Button, Grid, Role, Ui, WidgetInfo};
+use egui::{Button, Grid, Role, TextEdit, Ui, WidgetInfo};
 
 use super::sheet_parts::{Act, Offer, differences_ui, indicator_ui, text_ui, title_ui};
 use crate::model::{GeneralView, IndicatorState, Settle, Sheet, Side, UnitSettings};
+use crate::widgets::text_field::keep_space;
+
+/// Size of the field for notes.
+const NOTE_ROWS: usize = 3;
+const NOTE_WIDTH: f32 = 640.0;
 
 pub fn backups_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
     title_ui(ui, "Backups");
@@ -17,6 +22,7 @@ pub fn backups_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
          Restoring one makes its values changes, to be looked at and written.",
     );
     ui.weak(format!("Kept in {folder}"));
+    notes_ui(ui, general);
     if general.settings.backups().is_empty() {
         indicator_ui(
             ui,
@@ -49,6 +55,23 @@ pub fn backups_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
         None => {}
     }
     Vec::new()
+}
+
+/// What people want to remember of this unit: where it is built in, what was tried.
+fn notes_ui(ui: &mut Ui, general: &mut GeneralView<'_>) {
+    ui.add_space(4.0);
+    ui.strong("Notes");
+    let hint = "Where it is built in, what was tried, who has changed what. Kept beside its backups.";
+    let field = TextEdit::multiline(general.settings.notes_mut()).hint_text(hint);
+    let response = ui.add(field.desired_rows(NOTE_ROWS).desired_width(ui.available_width().min(NOTE_WIDTH)));
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Notes on this unit"));
+    if response.has_focus() {
+        keep_space(ui, response.id);
+    }
+    if response.lost_focus() {
+        general.settings.keep_notes();
+    }
+    ui.add_space(4.0);
 }
 
 pub fn copy_motor_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {

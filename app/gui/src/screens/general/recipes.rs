@@ -8,7 +8,7 @@ use super::help;
 use super::rows::{self, Columns};
 use super::sheet_parts::{indicator_ui, text_ui};
 use super::wiring::{self, wiring_ui};
-use crate::family::recipe::{Answers, Ask, Job, Live, Recipe, Recipes};
+use crate::family::recipe::{Answers, Ask, Goal, Live, Recipe, Recipes};
 use crate::model::{Connection, GeneralView, IndicatorState, UnitSettings};
 use crate::widgets::NO_VALUE;
 
@@ -41,7 +41,7 @@ pub fn recipes_ui(ui: &mut Ui, front: &mut Connection, recipes: &'static dyn Rec
 }
 
 /// What can be chosen; what this controller cannot do is there, and says so.
-fn jobs_ui(ui: &mut Ui, current: &mut Job, offered: &[(Job, Option<&'static Recipe>)]) {
+fn jobs_ui(ui: &mut Ui, current: &mut Goal, offered: &[(Goal, Option<&'static Recipe>)]) {
     ui.horizontal_wrapped(|ui| {
         for (job, recipe) in offered {
             let text = RichText::new(job.title());
@@ -122,7 +122,8 @@ fn ask_ui(ui: &mut Ui, front: &mut Connection, recipes: &'static dyn Recipes, re
     let hint = "They become edits below, and count once they are written";
     if button.on_hover_text(hint).clicked() {
         if let Some(wanted) = recipe.pin_use() {
-            recipes.use_pin(unit, answers.pin, wanted);
+            let used = unit.look(|looked| recipes.pin_use(looked, answers.pin, wanted));
+            unit.set_all(&used);
         }
         for (key, value) in wanted {
             unit.set(&key, value);
@@ -177,7 +178,10 @@ fn live_ui(ui: &mut Ui, front: &Connection, recipes: &dyn Recipes, live: Live) {
         Live::Pin => {
             let pin = front.general.recipes.answers.pin;
             let signal = front.link.readings.signal(pin);
-            let state = front.settings.unit().and_then(|unit| recipes.pin_state(unit, pin, signal));
+            let state = front
+                .settings
+                .unit()
+                .and_then(|unit| unit.look(|looked| recipes.pin_state(looked, pin, signal)));
             if let Some(state) = state {
                 indicator_ui(ui, IndicatorState::Active, &state);
             }
@@ -215,7 +219,8 @@ pub fn consequences(
     recipes: &dyn Recipes,
 ) -> Vec<(IndicatorState, brushwork_link::Message)> {
     let signal = |pin| front.link.readings.signal(pin);
-    front.settings.unit().map(|unit| recipes.consequences(unit, &signal)).unwrap_or_default()
+    let unit = front.settings.unit();
+    unit.map(|unit| unit.look(|looked| recipes.consequences(looked, &signal))).unwrap_or_default()
 }
 
 /// The settings themselves, as they stand in the lists.

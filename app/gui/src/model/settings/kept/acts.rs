@@ -31,6 +31,7 @@ impl Settings {
     /// Looks up what is kept of the unit that is looked at from now on.
     pub(in crate::model::settings) fn look_up(&mut self, key: UnitKey, identity: &Identity) {
         let kept = &mut self.kept;
+        kept.keep_notes();
         let unit = UnitId::new(identity, &kept.ports);
         kept.units.insert(key, unit.clone());
         kept.unit = Some(unit.clone());
@@ -42,6 +43,8 @@ impl Settings {
         kept.eeprom = kept.told(keeping.store().eeprom(&unit)).flatten();
         kept.look_at_files();
         kept.untold.extend(kept.wear_fault.clone());
+        kept.noted = kept.told(keeping.store().notes(&unit)).unwrap_or_default();
+        kept.noted_kept = kept.noted.clone();
     }
 
     /// What stands on the disk by now: backups, and how often the EEPROM was written.
@@ -78,6 +81,16 @@ impl Settings {
     /// The unit's backups, newest first.
     pub fn backups(&self) -> &[Backup] {
         &self.kept.backups
+    }
+
+    /// What is noted of the unit that is looked at, to be typed in.
+    pub fn notes_mut(&mut self) -> &mut String {
+        &mut self.kept.noted
+    }
+
+    /// Keeps what was typed, if it is new.
+    pub fn keep_notes(&mut self) {
+        self.kept.keep_notes();
     }
 
     /// Where the backups are.
