@@ -153,6 +153,7 @@ fn a_home_switch_is_set_with_its_consequence_told_before_it_is_written() {
     bench.pass_ms(300);
     let edits = bench.model().front.settings.unit().expect("it is there").edits().clone();
     assert!(edits.get(&format!("pin.{pin}.min_action")).is_some(), "{edits:?}");
+    assert!(bench.sees("Wanted so, not written yet"));
     assert!(bench.sees_part("is not known before its type is written. If that is at its low end, the position of motor 1 becomes 0 at once."));
     bench.press("Write settings");
     bench.pass_ms(300);

@@ -117,7 +117,12 @@ fn ask_ui(ui: &mut Ui, front: &mut Connection, recipes: &'static dyn Recipes, re
     let is_done = wanted.iter().all(|(key, value)| unit.wanted(key) == Some(*value));
     let can = lock.is_none() && !is_done && unit.is_read();
     ui.add_space(4.0);
-    let title = if is_done { "It is set so" } else { "Make these the wanted settings" };
+    let is_held = wanted.iter().all(|(key, value)| unit.on_controller(key) == Some(*value));
+    let title = match (is_done, is_held) {
+        (true, true) => "It is set so",
+        (true, false) => "Wanted so, not written yet",
+        (false, _) => "Make these the wanted settings",
+    };
     let button = ui.add_enabled(can, Button::new(title));
     let hint = "They become edits below, and count once they are written";
     if button.on_hover_text(hint).clicked() {
