@@ -15,6 +15,16 @@ macro_rules! causes {
             AnsweredLate {
                 /// The longest time between two answers, ms.
                 longest_gap_ms: u32,
+                /// When in the run it ended, ms.
+                #[serde(default)]
+                at_ms: u32,
+            },
+            /// Figures were taken although answers came late.
+            TakenLate {
+                /// The longest time between two answers, ms.
+                longest_gap_ms: u32,
+                /// When in the run it ended, ms.
+                at_ms: u32,
             },
         }
 
@@ -24,7 +34,8 @@ macro_rules! causes {
             pub fn sentence(self) -> Cow<'static, str> {
                 match self {
                     $(Self::$cause => $sentence.into(),)*
-                    Self::AnsweredLate { longest_gap_ms } => answered_late(longest_gap_ms).into(),
+                    Self::AnsweredLate { longest_gap_ms, at_ms } => answered_late(longest_gap_ms, at_ms).into(),
+                    Self::TakenLate { longest_gap_ms, at_ms } => taken_late(longest_gap_ms, at_ms).into(),
                 }
             }
         }
@@ -195,11 +206,26 @@ impl Cause {
     }
 }
 
+/// When in a run something was.
+fn at(at_ms: u32) -> String {
+    format!("at {:.1} s of the run", 1e-3 * f64::from(at_ms))
+}
+
 /// That it is the computer is shown by trying again with less to do; what stays then is the line's.
-fn answered_late(longest_gap_ms: u32) -> String {
+fn answered_late(longest_gap_ms: u32, at_ms: u32) -> String {
     format!(
-        "This computer answered late (the longest gap between two samples was {longest_gap_ms} ms), so the run says nothing about the \
-         machine. Try again with fewer programs running; if the gap stays, it is the line: look for lost replies, a radio \
-         or a network on the way, or an adapter that holds bytes back."
+        "This computer answered late: {longest_gap_ms} ms between two samples {}, so the run says nothing about the machine. Try again \
+         with fewer programs running; if the gap stays, it is the line: look for lost replies, a radio or a network on the way, or an \
+         adapter that holds bytes back.",
+        at(at_ms)
+    )
+}
+
+/// The mark of figures that may be worse than their intervals say.
+fn taken_late(longest_gap_ms: u32, at_ms: u32) -> String {
+    format!(
+        "These figures were taken while this computer answered late: {longest_gap_ms} ms between two samples {}. Run it again with \
+         fewer programs running before you rely on them.",
+        at(at_ms)
     )
 }

@@ -12,7 +12,7 @@ use crate::gains::Gains;
 use crate::law::{Ending, Facts, Law};
 use crate::motor_monitor::{MotorMonitor, NO_CURRENT_AMPS};
 use crate::open_loop_record::Actuation;
-use crate::pace::{Pace, quantile};
+use crate::pace::{Late, Pace, quantile};
 pub use crate::poll::{Drive, Input, Point};
 use crate::setup::{LoopAxis, Setup};
 use serde::{Deserialize, Serialize};
@@ -47,6 +47,8 @@ const LATE_S: f64 = 0.004;
 /// Silence after which the link counts as lost, s, and so many polls in a row: on a slow line a few lost replies take as long.
 const LINK_LOST_S: f64 = 0.15;
 const LINK_LOST_POLLS: u32 = 5;
+/// How often stretches of a run are done again: on a computer with six busy programs beside it one in ten is late.
+const LATE_TRIES: u32 = 4;
 /// Readings of the current that are looked at before a fault is named by it, and how far above the highest one at rest they must be:
 /// noise that reached 1 among the dozen readings at rest does not have its middle at 3.
 const DRIVEN_READINGS: usize = 6;
@@ -76,6 +78,10 @@ pub struct GuardOptions {
     /// this was looked at do not have it, and replay as they were.
     #[serde(default)]
     pub weighs_evidence: bool,
+    /// How often a stretch of the run is done again because this computer answered late meanwhile. Reports from before replay as they
+    /// were.
+    #[serde(default)]
+    pub late_tries: u32,
 }
 
 impl Default for GuardOptions {
@@ -90,6 +96,7 @@ impl Default for GuardOptions {
             max_amps: None,
             clear_winding: false,
             weighs_evidence: true,
+            late_tries: LATE_TRIES,
         }
     }
 }
@@ -120,6 +127,12 @@ pub struct ExperimentGuard<'a, L: Law> {
     /// What monitors it for stalls and lost signals.
     pub monitor: MotorMonitor,
     pace: Pace,
+    /// Where the exchanges of the present stretch begin.
+    stretch_from: usize,
+    /// The longest gap of earlier stretches whose figures are in use.
+    kept_late: Option<Late>,
+    /// How often stretches were done again.
+    tries: u32,
     epoch_s: f64,
     first_counts: Option<i64>,
     last_raw: i64,
@@ -160,6 +173,9 @@ impl<'a, L: Law> ExperimentGuard<'a, L> {
             drives: Vec::new(),
             monitor: MotorMonitor::default(),
             pace: Pace::default(),
+            stretch_from: 0,
+            kept_late: None,
+            tries: 0,
             epoch_s: now.as_secs_f64(),
             first_counts: None,
             last_raw: 0,
@@ -252,12 +268,80 @@ impl<'a, L: Law> ExperimentGuard<'a, L> {
         if !self.options.weighs_evidence {
             return cause;
         }
-        let took_s: Vec<f64> = self.exchanges.iter().map(|exchange| exchange.1).collect();
-        let late_s = self.pace.longest_late_s(&took_s).filter(|_| cause.is_of_motion());
-        if let Some(longest_s) = late_s {
-            return Cause::AnsweredLate { longest_gap_ms: (1e3 * longest_s).round() as u32 };
+        let took_s: Vec<f64> =
+            self.exchanges[self.stretch_from..].iter().map(|exchange| exchange.1).collect();
+        let late = self.pace.late(&took_s).or(self.kept_late).filter(|_| cause.is_of_motion());
+        if let Some(late) = late {
+            return self.answered_late(late);
         }
         if cause.is_by_current() && self.is_current_unclear() { Cause::CurrentUnclear } else { cause }
+    }
+
+    fn answered_late(&self, late: Late) -> Cause {
+        let (longest_gap_ms, at_ms) = self.milliseconds(late);
+        Cause::AnsweredLate { longest_gap_ms, at_ms }
+    }
+
+    /// A gap and when it ended, from the start of the run, ms.
+    fn milliseconds(&self, late: Late) -> (u32, u32) {
+        let ms = |seconds: f64| (1e3 * seconds).round().max(0.0) as u32;
+        (ms(late.longest_s), ms(late.at_s - self.epoch_s))
+    }
+
+    /// Does a stretch of the run, and does it again, up to a number of times, where this computer answered late meanwhile: what was seen then
+    /// says nothing. The last time figures that came of it count, and are marked. `anew` says whether nothing is known of the motor before.
+    pub(crate) fn stretch<T, R: Clone>(
+        &mut self,
+        anew: bool,
+        report: &mut R,
+        mark: impl Fn(&mut R, Cause),
+        mut work: impl FnMut(&mut Self, &mut R) -> Result<T, Cause>,
+    ) -> Result<T, Cause> {
+        if self.options.late_tries == 0 {
+            return work(self, report);
+        }
+        let (before, monitor) = (report.clone(), self.monitor.clone());
+        loop {
+            (self.pace, self.stretch_from) = (Pace::default(), self.exchanges.len());
+            let outcome = work(self, report).map_err(|cause| self.concluded(cause));
+            let late = self.pace.late_gap();
+            let is_late = match outcome {
+                Ok(_) => late.is_some(),
+                Err(cause) => matches!(cause, Cause::AnsweredLate { .. }),
+            };
+            if is_late && self.tries < self.options.late_tries {
+                self.tries += 1;
+                report.clone_from(&before);
+                self.begin_again(anew, &monitor)?;
+                continue;
+            }
+            if let Some(late) = late.filter(|_| outcome.is_ok()) {
+                let (longest_gap_ms, at_ms) = self.milliseconds(late);
+                mark(report, Cause::TakenLate { longest_gap_ms, at_ms });
+                self.kept_late = Some(late);
+            }
+            return outcome;
+        }
+    }
+
+    /// Brings the motor to rest and forgets what was seen of it since a stretch began.
+    fn begin_again(&mut self, anew: bool, monitor: &MotorMonitor) -> Result<(), Cause> {
+        self.progress("This computer answered late: doing that again");
+        retried(|| self.axis.drive_duty(0))?;
+        wait_for_rest(self.axis);
+        self.monitor = monitor.clone();
+        (self.silent_since_s, self.silent_polls, self.beyond) = (None, 0, 0);
+        let now_s = self.now_s();
+        self.monitor.forget(now_s);
+        if anew {
+            self.points.clear();
+            self.drives.clear();
+            self.exchanges.clear();
+        } else {
+            self.drives.push(Drive { t: now_s, input: Input::Duty(0.0) });
+        }
+        self.next_poll = self.axis.now();
+        Ok(())
     }
 
     /// Whether the current of the driven motor, as last read, could be the noise of readings at rest.
@@ -434,7 +518,8 @@ impl<'a, L: Law> ExperimentGuard<'a, L> {
                 self.silent_polls += 1;
                 let silent_s = self.now_s() - since_s;
                 if silent_s > LINK_LOST_S && self.silent_polls >= LINK_LOST_POLLS {
-                    let late = Cause::AnsweredLate { longest_gap_ms: (1e3 * silent_s).round() as u32 };
+                    let late = self
+                        .answered_late(Late { longest_s: silent_s, at_s: self.epoch_s + since_s + silent_s });
                     return Err(if self.pace.is_coming_late() { late } else { Cause::LinkLost });
                 }
                 return self.check_unseen().map(|()| None);

@@ -15,6 +15,15 @@ const LATE_RATIO: f64 = 4.0;
 /// computer by 0.1 ms, and with three busy programs to each processor by 12 to 16 ms.
 const UNSTEADY_S: f64 = 0.005;
 
+/// That answers were late.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Late {
+    /// The longest gap, or the spread of the exchanges where that is longer, s.
+    pub(crate) longest_s: f64,
+    /// When the longest gap ended, s, on the clock of the exchanges.
+    pub(crate) at_s: f64,
+}
+
 /// The answers of a run.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pace {
@@ -22,6 +31,8 @@ pub(crate) struct Pace {
     last_s: Option<f64>,
     /// How long each gap was, s, oldest first.
     gaps_s: Vec<f64>,
+    /// The longest gap, s, and when it ended.
+    longest: Option<Late>,
     /// Whether the polls that failed last came, but too late to be of use.
     came_late: bool,
 }
@@ -31,7 +42,11 @@ impl Pace {
     pub(crate) fn answered(&mut self, exchange: &Exchange) {
         let now_s = exchange.received.as_secs_f64();
         if let Some(last_s) = self.last_s {
-            self.gaps_s.push(now_s - last_s);
+            let gap_s = now_s - last_s;
+            self.gaps_s.push(gap_s);
+            if self.longest.is_none_or(|longest| gap_s > longest.longest_s) {
+                self.longest = Some(Late { longest_s: gap_s, at_s: now_s });
+            }
         }
         self.last_s = Some(now_s);
         self.came_late = false;
@@ -52,14 +67,21 @@ impl Pace {
         self.last_s = None;
     }
 
-    /// The longest gap, s, where it was a late one, or where each of the exchanges, which took so long, took another time, so that nobody
-    /// knows when what was read.
-    pub(crate) fn longest_late_s(&self, took_s: &[f64]) -> Option<f64> {
-        let longest_s = self.gaps_s.iter().copied().fold(0.0, f64::max);
+    /// The longest gap, where it was a late one.
+    pub(crate) fn late_gap(&self) -> Option<Late> {
         let limit_s = LATE_S.max(LATE_RATIO * quantile(&self.gaps_s, 0.5).unwrap_or_default());
+        self.longest.filter(|longest| longest.longest_s > limit_s)
+    }
+
+    /// The same, or where each of the exchanges, which took so long, took another time, so that nobody knows when what was read.
+    pub(crate) fn late(&self, took_s: &[f64]) -> Option<Late> {
         let spread_s =
             quantile(took_s, 0.9).zip(quantile(took_s, 0.1)).map_or(0.0, |(slow, quick)| slow - quick);
-        (longest_s > limit_s || spread_s > UNSTEADY_S).then_some(longest_s.max(spread_s))
+        let unsteady = || {
+            let longest = self.longest.unwrap_or_default();
+            (spread_s > UNSTEADY_S).then_some(Late { longest_s: longest.longest_s.max(spread_s), ..longest })
+        };
+        self.late_gap().or_else(unsteady)
     }
 }
 
@@ -92,26 +114,29 @@ mod tests {
 
     #[test]
     fn a_gap_is_late_beyond_what_a_standstill_is_read_from_and_beyond_the_usual() {
-        assert_eq!(polled(&[10; 30]).longest_late_s(&[]), None);
-        assert_eq!(polled(&[10, 10, 10, 55, 10, 10]).longest_late_s(&[]), None);
+        assert_eq!(polled(&[10; 30]).late(&[]), None);
+        assert_eq!(polled(&[10, 10, 10, 55, 10, 10]).late(&[]), None);
         let late = polled(&[10, 10, 10, 200, 10, 10]);
-        assert!(late.longest_late_s(&[]).is_some_and(|gap_s| (gap_s - 0.2).abs() < 1e-9));
-        assert_eq!(polled(&[100, 90, 110, 300, 100]).longest_late_s(&[]), None, "a slow line");
-        assert!(polled(&[100, 90, 110, 450, 100]).longest_late_s(&[]).is_some());
+        assert!(
+            late.late(&[])
+                .is_some_and(|late| (late.longest_s - 0.2).abs() < 1e-9 && (late.at_s - 0.23).abs() < 1e-9)
+        );
+        assert_eq!(polled(&[100, 90, 110, 300, 100]).late(&[]), None, "a slow line");
+        assert!(polled(&[100, 90, 110, 450, 100]).late(&[]).is_some());
     }
 
     #[test]
     fn exchanges_that_spread_by_half_a_poll_are_late_and_slow_ones_are_not() {
         let late = |took_ms: &dyn Fn(u32) -> u32| {
             let took_s: Vec<f64> = (0..40).map(|number| 1e-3 * f64::from(took_ms(number))).collect();
-            polled(&[25; 40]).longest_late_s(&took_s)
+            polled(&[25; 40]).late(&took_s).map(|late| late.longest_s)
         };
         assert_eq!(late(&|number| 15 + number % 5), None, "a slow line");
         assert_eq!(late(&|number| if number % 20 == 3 { 24 } else { 1 }), None, "one in twenty");
         let busy = late(&|number| 4 * (number % 5)).expect("a time slice of 4 ms, and up to four of them");
         assert!((busy - 0.025).abs() < 1e-9, "{busy}");
         assert!(
-            Pace::default().longest_late_s(&[0.0, 0.016]).is_some_and(|gap_s| gap_s > 0.015),
+            Pace::default().late(&[0.0, 0.016]).is_some_and(|late| late.longest_s > 0.015),
             "no gap is reported as 0 ms"
         );
     }
@@ -122,7 +147,7 @@ mod tests {
         pace.pause();
         pace.answered(&at(5_000));
         pace.answered(&at(5_010));
-        assert_eq!(pace.longest_late_s(&[]), None);
+        assert_eq!(pace.late(&[]), None);
     }
 
     #[test]

@@ -143,6 +143,18 @@ fn run<L: LawProbe>(
     if request.method == Method::Velocity && guard.setup.encoder == EncoderClass::AbsoluteWrapping {
         return Err(Cause::WrappingEncoder);
     }
+    let mark = |report: &mut Report<L>, cause| report.causes.push(cause);
+    let (probe, found) =
+        guard.stretch(true, report, mark, |guard, report| identify(guard, request, report))?;
+    guard.stretch(false, report, mark, |guard, report| design(guard, request, &probe, &found, report))
+}
+
+/// The motor, from a little duty on.
+fn identify<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
+    request: &Request<L>,
+    report: &mut Report<L>,
+) -> Result<(Probe, Found), Cause> {
     guard.progress("Checking the wiring with a little duty");
     let probe = run_probe(guard, 1.0)?;
     guard.progress("Measuring the motor");
@@ -166,7 +178,18 @@ fn run<L: LawProbe>(
         Ok(winding) => report.winding = Some(winding),
         Err(why) => report.winding_unknown = Some(why),
     }
-    let request = &with_law(guard, request, &probe, &found, report)?;
+    Ok((probe, found))
+}
+
+/// The loop, from its law to gains that were tried.
+fn design<L: LawProbe>(
+    guard: &mut ExperimentGuard<'_, L>,
+    request: &Request<L>,
+    probe: &Probe,
+    found: &Found,
+    report: &mut Report<L>,
+) -> Result<(), Cause> {
+    let request = &with_law(guard, request, probe, found, report)?;
     let task = Task {
         plant: found.fit.model,
         law: request.law,
@@ -186,7 +209,7 @@ fn run<L: LawProbe>(
     guard.progress("Measuring the lag of the loop");
     let task = settle_lag(guard, request, task, report)?;
     let task = if request.method == Method::Pid {
-        with_backlash(guard, request, task, &probe, report)?
+        with_backlash(guard, request, task, probe, report)?
     } else {
         task
     };

@@ -209,6 +209,7 @@ messages! {
     pub enum CliTuneMessage {
         ReportNotWritten { why: String } "Could not write the report: {why}.",
         Ended { cause: String } "The run was ended: {cause}. The motors were stopped.",
+        BegunAgain "This computer answered late: the program did not renew the motion within 250 ms, and the motors were stopped. The run begins again.",
         Internal { word: String } "Internal error while tuning: {word}. The motors were stopped.",
         NotTuned { why: String } "The motor was not tuned: {why}.",
         NotPutBack "What the tuning changed could not be put back: `brushwork settings unfinished` tells what is left.",

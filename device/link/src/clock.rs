@@ -14,6 +14,10 @@ pub trait Clock: Send + Sync {
 
     /// Waits for `time`. A virtual clock moves on by that much instead.
     fn sleep(&self, time: Duration);
+
+    /// The device thread does not look at it before `until`, unless it is woken. A clock that is shared with a simulated machine stands
+    /// still for whoever is overdue.
+    fn rest_until(&self, _until: Duration) {}
 }
 
 /// The machine's monotonic clock; its epoch is the moment it was made.

@@ -17,11 +17,12 @@ use crate::{ConnectArgs, Replace};
     Exit codes:\n  \
     0  TUNED\n  \
     8  TUNED WITH WARNINGS: gains were found, with something to know about them\n  \
-    4  REFUSED, with the cause, or ended since this computer answered late; the old gains are in force\n  \
+    4  REFUSED, with the cause; the old gains are in force\n  \
     1  the report could not be written, or a replay differs from its report\n  \
     2  the command line could not be understood\n  \
     3  no controller could be reached, or the link was lost\n  \
     5  the gains are in RAM, but saving them to EEPROM did not take\n  \
+    11  this computer answered late, also where it was tried again: nothing is known of the motor; the old gains are in force\n  \
     130  ended by Ctrl-C or another signal, after both motors were stopped and the old gains put back\n\
     A replay ends with the code of the verdict in its report.")]
 pub struct TuneArgs {

@@ -8,6 +8,7 @@ use crate::messages::CliTuneMessage;
 use brushwork_core::messages::{EndedMessage, TuneMessage};
 use std::time::{Duration, Instant};
 
+use brushwork_link::exchange::Interruption;
 use brushwork_link::{ArmScope, Event, Request, SettingsTable};
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::report::Verdict;
@@ -92,7 +93,8 @@ fn session(
         EncoderArg::AbsoluteWrapping => EncoderClass::AbsoluteWrapping,
     });
     let target = Target { motor: motor(args), encoder, stream: controller.client.stream };
-    let mut sequence = Sequence::new(Work::Tune(request(args, method)), target, ArmScope::CommandLine);
+    let sequence = Sequence::new(Work::Tune(request(args, method)), target, ArmScope::CommandLine);
+    let mut sequence = sequence.begun_again_when_late();
     let (ended, stopped) = match carry_out(&mut sequence, controller, interrupt) {
         Ok(ended) => ended,
         Err(exit) => {
@@ -105,7 +107,14 @@ fn session(
         None => None,
         Some(Why::Interrupted(cause)) => {
             say(CliTuneMessage::Ended { cause: cause.to_string() });
-            Some(exit_of_interruption(cause, stopped))
+            Some(match cause {
+                Interruption::DeadMan => Exit::TooLate,
+                Interruption::Stop
+                | Interruption::Disarm
+                | Interruption::Closing
+                | Interruption::Cancelled
+                | Interruption::TimeLimit => exit_of_interruption(cause, stopped),
+            })
         }
         Some(Why::Failed(failure)) => Some(Exit::Refused.saying(failure)),
         Some(Why::Panicked(word)) => {
@@ -171,8 +180,12 @@ fn carry_out(
                 if let Event::JobProgress { text, .. } = &event {
                     say(text);
                 }
+                let before = sequence.begun_again();
                 if let Some(ended) = sequence.take(event) {
                     return Ok((ended, stopped));
+                }
+                if sequence.begun_again() > before {
+                    say(CliTuneMessage::BegunAgain);
                 }
             }
             None => {}

@@ -1,6 +1,7 @@
 //! A report in words and figures.
 
 use brushwork_core::tune::law::Report;
+use brushwork_tuning::cause::Cause;
 use brushwork_tuning::law::Law;
 use brushwork_tuning::registers::RegisterTable as _;
 use brushwork_tuning::report::Verdict;
@@ -13,7 +14,16 @@ pub fn exit_of(report: &Report) -> Exit {
     match report.verdict {
         Verdict::Tuned => Exit::Done,
         Verdict::TunedWithWarnings => Exit::TunedWithWarnings,
-        Verdict::Refused => Exit::Refused,
+        Verdict::Refused => {
+            let cause = report.causes.first();
+            if matches!(cause, Some(Cause::AnsweredLate { .. })) {
+                Exit::TooLate
+            } else if cause == Some(&Cause::LinkLost) {
+                Exit::NoLink
+            } else {
+                Exit::Refused
+            }
+        }
     }
 }
 

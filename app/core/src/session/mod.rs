@@ -22,6 +22,7 @@ use crate::stop::outside;
 
 pub mod bus;
 pub mod firmware;
+pub mod in_step;
 pub mod line;
 pub mod simulation;
 
@@ -107,7 +108,16 @@ fn open_line(
     running: Option<Arc<Simulation>>,
     ports: &[PortInfo],
 ) -> Result<Session, SessionError> {
-    let (transport, simulation) = connect(target, running)?;
+    let (transport, simulation, clock) = match target {
+        ConnectTarget::Sim(text) => {
+            let simulation = simulation_of(text, running)?;
+            let (transport, clock) = simulation.connect_in_step(&*clock)?;
+            (transport, Some(simulation), clock)
+        }
+        ConnectTarget::Serial { .. } | ConnectTarget::Tcp { .. } | ConnectTarget::Can { .. } => {
+            (target.open()?, None, clock)
+        }
+    };
     if let Some((node, form)) = on_can(target, simulation.as_deref()) {
         let options =
             node.map_or(options, |node| SessionOptions { addresses: Addresses::Only(node.get()), ..options });
@@ -178,11 +188,16 @@ pub fn connect(target: &ConnectTarget, running: Option<Arc<Simulation>>) -> Resu
     let ConnectTarget::Sim(text) = target else {
         return Ok((target.open()?, None));
     };
-    let simulation = match running.filter(|running| running.is(text)) {
-        Some(running) => running,
-        None => Arc::new(Simulation::start(text)?),
-    };
+    let simulation = simulation_of(text, running)?;
     Ok((Box::new(simulation.connect()?), Some(simulation)))
+}
+
+/// The simulated machine that is meant, started unless it runs.
+fn simulation_of(text: &str, running: Option<Arc<Simulation>>) -> Result<Arc<Simulation>, SimulationError> {
+    match running.filter(|running| running.is(text)) {
+        Some(running) => Ok(running),
+        None => Ok(Arc::new(Simulation::start(text)?)),
+    }
 }
 
 /// Whether a CAN bus is at the end of a target: the node that is meant, if one is, and the adapter's form.

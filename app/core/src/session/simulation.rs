@@ -8,14 +8,17 @@ use brushwork_canopen::NodeId;
 use brushwork_canopen::adapter::Form;
 use brushwork_family::{Simulator, SimulatorError, Started, simulator};
 use brushwork_link::transport::{ChannelTransport, Stream};
-use brushwork_link::{FamilyChoice, HiddenSettings, UnitAddress};
+use brushwork_link::{Clock, FamilyChoice, HiddenSettings, UnitAddress};
 use brushwork_plant::ParamsError;
-use brushwork_plant::server::{ChannelEnds, Endpoint, Server, ServerError, ServerOptions, SimHandle};
+use brushwork_plant::server::{
+    ChannelEnds, Endpoint, Server, ServerError, ServerOptions, SharedTime, SimHandle,
+};
 use brushwork_plant::world::{WorldAction, WorldView};
 use brushwork_script::debug::{Request, View, Wanted};
 use brushwork_script::language::Language;
 use brushwork_script::program::Program;
 
+use super::in_step::{self, InStep};
 use super::line::SimulatedLine;
 use crate::examine::like;
 
@@ -127,14 +130,29 @@ impl Simulation {
     ///
     /// # Errors
     /// The cable is unplugged, or the machine has ended.
-    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     pub fn connect(&self) -> Result<ChannelTransport, SimulationError> {
-        let ChannelEnds { to_controller, from_controller } =
+        Ok(self.plug_in()?.0)
+    }
+
+    /// The same for a client whose clock stands still with the machine where this computer is too busy for one of them. The clock counts
+    /// from where `clock` is.
+    ///
+    /// # Errors
+    /// As for [`Self::connect`].
+    pub fn connect_in_step(&self, clock: &dyn Clock) -> Result<InStep, SimulationError> {
+        let (transport, time) = self.plug_in()?;
+        Ok(in_step::pair(transport, &time, clock.now()))
+    }
+
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
+    fn plug_in(&self) -> Result<(ChannelTransport, SharedTime), SimulationError> {
+        let ChannelEnds { to_controller, from_controller, time } =
             self.server.new_channel().map_err(|error| match error {
                 ServerError::Unplugged => SimulationError::Unplugged,
                 other => SimulationError::Gone(other),
             })?;
-        Ok(ChannelTransport::new(to_controller, from_controller, format!("sim:{}", self.text)))
+        let name = format!("sim:{}", self.text);
+        Ok((ChannelTransport::new(to_controller, from_controller, name), time))
     }
 
     /// Does something to the world of a unit, counted from 0. Never waits.

@@ -22,6 +22,9 @@ use crate::messages::EndedMessage;
 /// How often putting the gains back is asked for again when something breaks into it.
 const MOST_RESTORES: u8 = 4;
 
+/// How often a run that this computer was too late for is begun again: beside six busy programs on two processors one in twenty is.
+const LATE_RUNS: u8 = 3;
+
 /// What a run does.
 #[derive(Clone, Debug)]
 pub enum Work {
@@ -149,6 +152,10 @@ pub struct Sequence {
     /// The run itself has come to its end.
     is_complete: bool,
     restored: Option<Restored>,
+    /// How often it may still begin again by itself where the motion was not renewed in time.
+    late_runs: u8,
+    /// How often it has.
+    begun_again: u8,
 }
 
 impl Sequence {
@@ -173,7 +180,21 @@ impl Sequence {
             interrupted: None,
             is_complete: false,
             restored: None,
+            late_runs: 0,
+            begun_again: 0,
         }
+    }
+
+    /// The same, begun again by itself where this computer was too late to renew the motion. It arms again for that, so that it is for whoever
+    /// has no screen on which something else could have been done meanwhile.
+    #[must_use]
+    pub fn begun_again_when_late(self) -> Self {
+        Self { late_runs: LATE_RUNS, ..self }
+    }
+
+    /// How often it was begun again by itself.
+    pub fn begun_again(&self) -> u8 {
+        self.begun_again
     }
 
     /// What a lost link has left to do: nothing but putting back.
@@ -213,6 +234,7 @@ impl Sequence {
 
     /// Ends it before its end. What runs is interrupted by the device thread; what has not begun does not begin.
     pub fn abort(&mut self, why: EndedMessage) {
+        self.late_runs = 0;
         if self.stage == Stage::Restoring {
             return;
         }
@@ -322,6 +344,10 @@ impl Sequence {
         match std::mem::replace(&mut self.asked, Asked::Nothing) {
             Asked::Work(_) => self.work_ended(ending),
             Asked::Restore(ticket) => match ticket.ending(ending) {
+                JobEnding::Done(_) if self.was_late() => {
+                    self.begin_again();
+                    None
+                }
                 JobEnding::Done(restored) => {
                     self.restored = Some(restored);
                     Some(self.end(None))
@@ -338,6 +364,21 @@ impl Sequence {
             },
             Asked::Nothing | Asked::Arming => None,
         }
+    }
+
+    /// Whether the run was ended since its motion was not renewed in time, and may begin again.
+    fn was_late(&self) -> bool {
+        let is_late = self.interrupted == Some(Interruption::DeadMan);
+        is_late && matches!(self.work, Work::Tune(_)) && self.late_runs > 0
+    }
+
+    fn begin_again(&mut self) {
+        self.late_runs -= 1;
+        self.begun_again += 1;
+        (self.why, self.interrupted, self.restores) = (None, None, 0);
+        (self.setup, self.found) = (Slot::default(), Slot::default());
+        self.texts.clear();
+        self.go_to(Stage::Preparing);
     }
 
     /// The job before the run has ended, or the run itself.

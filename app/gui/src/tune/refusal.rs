@@ -27,7 +27,7 @@ fn steps(cause: Cause) -> &'static [&'static str] {
             "Look at the encoder's plug, and turn the shaft by hand: the encoder figure at the top must change.",
             "Take brakes and jams away, and move the axis off its end stop.",
         ],
-        Cause::AnsweredLate { .. } => &[
+        Cause::AnsweredLate { .. } | Cause::TakenLate { .. } => &[
             "Close other programs that keep this computer busy, and try again.",
             "If it stays, it is the line: look at the link's figures for lost replies, check the cable, and try without a radio, a network or \
              an adapter on the way.",

@@ -210,7 +210,9 @@ impl Exchange {
                 self.unsettled = false;
                 return Ok(());
             }
-            let count = self.transport.read(&mut buffer, self.slice(watch, now, quiet_until))?;
+            let slice = self.slice(watch, now, quiet_until);
+            self.clock.rest_until(quiet_until);
+            let count = self.transport.read(&mut buffer, slice)?;
             if count > 0 {
                 quiet_since = self.clock.now();
                 self.stray(&buffer[..count], quiet_since);
@@ -253,7 +255,9 @@ impl Exchange {
             if now >= until {
                 return Ok(());
             }
-            self.clock.sleep(self.slice(watch, now, until));
+            let slice = self.slice(watch, now, until);
+            self.clock.rest_until(until);
+            self.clock.sleep(slice);
         }
     }
 
@@ -371,6 +375,7 @@ impl Exchange {
             let now = self.clock.now();
             self.look(watch, now)?;
             let slice = self.slice(watch, now, deadline);
+            self.clock.rest_until(deadline);
             let count = self.transport.read(&mut buffer, slice)?;
             let late = self.clock.now().saturating_sub(now + slice);
             if late >= STOLEN {

@@ -3,6 +3,7 @@
 use super::channel_ends::ChannelEnds;
 use super::error::ServerError;
 use super::line::{Heard, Line};
+use super::shared_time::SharedTime;
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 use std::thread;
 use std::time::Duration;
@@ -61,10 +62,10 @@ impl Line for ChannelLine {
         true
     }
 
-    fn new_channel(&mut self) -> Option<ChannelEnds> {
+    fn new_channel(&mut self, time: &SharedTime) -> Option<ChannelEnds> {
         let (to_controller, requests) = bounded(CAPACITY);
         let (replies, from_controller) = bounded(CAPACITY);
         self.client = Some(Client { requests, replies });
-        Some(ChannelEnds { to_controller, from_controller })
+        Some(ChannelEnds { to_controller, from_controller, time: time.clone() })
     }
 }

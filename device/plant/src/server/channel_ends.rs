@@ -1,5 +1,6 @@
 //! What a client inside the program holds of its line.
 
+use super::shared_time::SharedTime;
 use crossbeam_channel::{Receiver, Sender};
 
 /// The client's two ends of an in-process line. Each message is one write. When the controller is unplugged both ends are
@@ -10,4 +11,6 @@ pub struct ChannelEnds {
     pub to_controller: Sender<Vec<u8>>,
     /// Bytes from the controller.
     pub from_controller: Receiver<Vec<u8>>,
+    /// The machine's time, in which the client may take part.
+    pub time: SharedTime,
 }

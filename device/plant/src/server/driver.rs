@@ -100,6 +100,7 @@ impl<M: Machine + 'static> Driver<M> {
         self.hurry();
         let now = self.advance();
         while let Some(reply) = self.stack.take_output(self.stream) {
+            self.clock.shared().machine_answers();
             self.line.send(&reply);
         }
         // What a script says on a stream that leads nowhere.
@@ -113,6 +114,9 @@ impl<M: Machine + 'static> Driver<M> {
         // The wall clock has gone on since the machine was brought up to it.
         let looked_at = self.clock.now(self.stack.now());
         let patience = self.patience(looked_at);
+        // It may look later than that, but for a reply that is to leave.
+        let reply = self.stack.next_output_at().map(|at| self.clock.to_wall(at.saturating_sub(looked_at)));
+        self.clock.rest(reply);
         let heard = self.line.receive(&mut self.incoming, patience);
         self.hear(looked_at);
         if heard == Heard::ClientLeft {
@@ -133,6 +137,10 @@ impl<M: Machine + 'static> Driver<M> {
         } else {
             let now = self.advance();
             self.stack.receive(self.stream, &self.incoming);
+            if self.clock.shared().is_shared() {
+                // Time has stood still since they were written: the machine itself sees how long the line was silent.
+                return;
+            }
             let heard_at = self.clock.now(now);
             let silence = self.stack.silence();
             let delivery = if silence < PACKET_GAP { SHORT_GAP_DELIVERY } else { DELIVERY };
@@ -183,7 +191,9 @@ impl<M: Machine + 'static> Driver<M> {
                         Command::Apply(unit, action) => self.stack.apply(unit, &action),
                         Command::Inspect(inspect) => inspect(self.stack.inner_mut().inner_mut()),
                         Command::NewChannel(reply) => {
-                            let ends = if self.stack.plugged() { self.line.new_channel() } else { None };
+                            let shared = self.clock.shared();
+                            let ends =
+                                if self.stack.plugged() { self.line.new_channel(shared) } else { None };
                             if ends.is_some() {
                                 self.hold_rts(true);
                             }

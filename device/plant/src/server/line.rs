@@ -2,6 +2,7 @@
 
 use super::channel_ends::ChannelEnds;
 use super::error::ServerError;
+use super::shared_time::SharedTime;
 use std::time::Duration;
 
 /// One endpoint: bytes in and out, whether or not a client is there.
@@ -23,8 +24,8 @@ pub trait Line: Send {
         false
     }
 
-    /// Connects a client inside the program; none where the endpoint is no channel.
-    fn new_channel(&mut self) -> Option<ChannelEnds> {
+    /// Connects a client inside the program, which may share the machine's time; none where the endpoint is no channel.
+    fn new_channel(&mut self, _time: &SharedTime) -> Option<ChannelEnds> {
         None
     }
 }

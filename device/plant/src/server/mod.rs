@@ -15,6 +15,7 @@ mod line;
 mod pace;
 #[cfg(unix)]
 mod pty;
+mod shared_time;
 mod stack;
 mod tcp;
 mod wait;
@@ -25,6 +26,7 @@ pub use error::ServerError;
 pub use handle::SimHandle;
 pub use line::{Heard, Line};
 pub use pace::Pace;
+pub use shared_time::{ClientTime, SharedTime};
 
 use crate::faults::{Fault, Faulty};
 use crate::machine::{Machine, StreamIndex};

@@ -43,10 +43,10 @@ fn assert_blames_no_machine<L: Law>(report: &Report<L>, case: &str) -> bool {
         return false;
     }
     let cause = report.causes.first().copied();
-    let Some(Cause::AnsweredLate { longest_gap_ms }) = cause else {
+    let Some(cause @ Cause::AnsweredLate { longest_gap_ms, .. }) = cause else {
         panic!("{case}: {:?}", report.causes);
     };
-    let sentence = Cause::AnsweredLate { longest_gap_ms }.sentence();
+    let sentence = cause.sentence();
     assert!(
         sentence.contains("This computer answered late") && sentence.contains(&longest_gap_ms.to_string())
     );

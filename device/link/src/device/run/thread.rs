@@ -59,7 +59,9 @@ fn turn(mut device_loop: DeviceLoop, clock: &dyn Clock, woken: &Receiver<()>) {
                 Step::Again => {}
                 // Woken early or not, the next step finds out what is due.
                 Step::IdleUntil(until) => {
-                    let _ = woken.recv_timeout(until.saturating_sub(clock.now()));
+                    let left = until.saturating_sub(clock.now());
+                    clock.rest_until(until);
+                    let _ = woken.recv_timeout(left);
                 }
                 Step::Ended => return,
             }
