@@ -138,6 +138,21 @@ causes! {
     /// The loop of the controller was left switched off at the end of a run that found something wrong with the machine.
     LoopOff "The controller's loop was left switched off (DISABLEPID in FUNCTION, in RAM), since with this it could drive the motor \
         away. When the fault is remedied, arm or drive again: that switches the loop on where the motor stands.";
+    /// A step or a relay was asked for where there is none.
+    OnlyFree "Step and relay are for the velocity loop of a motor that may turn freely. Choose the method fit.";
+    /// Between the starting duty and the highest there is no room.
+    NoRoomForStep "Between the duty at which the motor starts and the highest that is allowed there is no room for a step. Allow more \
+        duty, or choose the method fit.";
+    /// The two speeds of a step or relay do not tell a gain.
+    StepUnclear "What was measured does not tell how much speed a duty makes: the two speeds lie too near to each other for their noise, or \
+        the motor turns unevenly. Try about another duty, or choose the method fit.";
+    /// A relay did not bring the motor into a limit cycle.
+    NoLimitCycle "The relay did not bring the motor into a steady limit cycle that is larger than the noise of its speed: the motor is too \
+        quick for the samples, too slow, or its encoder too coarse. Choose the method fit.";
+    /// The rule of the method has no gains for this loop.
+    RuleUnstable "The rule of this method has no gains with which this loop would keep its margin. Choose the method fit.";
+    /// The gains of a rule were lowered.
+    RuleLowered "The gains of the rule were lowered until the loop kept its margin and its noise on the model.";
     /// Nothing moves, and the current cannot be distinguished from its own noise.
     CurrentUnclear "The motor was driven and not seen to move, and its current is no higher than the noise of its readings, so it \
         does not say why. Check the motor leads, the encoder's plug, and whether the shaft is free or at an end stop.";
@@ -181,6 +196,8 @@ impl Cause {
                 | Self::TravelLimit
                 | Self::NarrowTravel
                 | Self::TooCoarse
+                | Self::StepUnclear
+                | Self::NoLimitCycle
                 | Self::PoorFit
                 | Self::Lopsided
                 | Self::CurrentLimited

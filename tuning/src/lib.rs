@@ -6,6 +6,7 @@
 //!
 #![doc = include_str!("../MEASURED.md")]
 
+pub mod alternatives;
 pub mod axis;
 mod backlash;
 pub mod cascade;
@@ -42,6 +43,7 @@ pub mod score;
 pub mod setpoint;
 pub mod settle;
 pub mod setup;
+pub mod stability;
 mod step;
 pub mod ticks;
 pub mod trace;

@@ -2,7 +2,7 @@
 
 use crate::cause::Cause;
 use crate::design::{Design, Task};
-use crate::experiment::{Backlash, FreeRun, Probe, WindowRun};
+use crate::experiment::{Backlash, FreeRun, Probe, RelayRun, StepRun, WindowRun};
 use crate::fit::Fit;
 use crate::lag::LagFit;
 use crate::law::Law;
@@ -67,6 +67,12 @@ pub struct Report<L: Law> {
     pub free: Option<FreeRun>,
     /// The run inside a window.
     pub window: Option<WindowRun>,
+    /// The step.
+    #[serde(default)]
+    pub step: Option<StepRun>,
+    /// The relay.
+    #[serde(default)]
+    pub relay: Option<RelayRun>,
     /// What the textbook experiments see in the same record.
     pub classic: Option<Classic>,
     /// The open-loop fit.

@@ -18,6 +18,26 @@ pub enum Method {
     Piv,
 }
 
+/// How the motor is identified, and whose gains are proposed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Identification {
+    /// A model is fitted to several motions up to full duty; gains are searched for on it.
+    #[default]
+    Fit,
+    /// One step about a set duty; SIMC.
+    Step,
+    /// A relay about a set speed; Tyreus-Luyben.
+    Relay,
+}
+
+/// Duty about which a step or a relay works, where none is asked for.
+pub const MIDDLE_DUTY: f64 = 0.5;
+
+fn middle_duty() -> f64 {
+    MIDDLE_DUTY
+}
+
 /// How the axis may be moved.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -42,6 +62,12 @@ impl Excitation {
 pub struct Request<L: Law> {
     /// The loop.
     pub method: Method,
+    /// How the motor is identified.
+    #[serde(default)]
+    pub identification: Identification,
+    /// Duty about which a step or a relay works, 0 to 1.
+    #[serde(default = "middle_duty")]
+    pub about_duty: f64,
     /// 0 (soft) to 100 (stiff).
     pub level: f64,
     /// How the axis may be moved.
@@ -63,6 +89,8 @@ impl<L: Law> Default for Request<L> {
     fn default() -> Self {
         Self {
             method: Method::Velocity,
+            identification: Identification::Fit,
+            about_duty: MIDDLE_DUTY,
             level: 50.0,
             excitation: Excitation::Free,
             guard: GuardOptions::default(),

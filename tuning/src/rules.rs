@@ -61,6 +61,24 @@ impl Classic {
         })
     }
 
+    /// What the experiments would see of a known motor: its ultimate point is where gain times dead time turn it by half a turn.
+    #[must_use]
+    pub fn of_model(gain_counts_per_s: f64, tau_s: f64, dead_time_s: f64) -> Self {
+        let dead_time_s = dead_time_s.max(SHORTEST_S);
+        let (mut low, mut high) = (1e-3, 1e5);
+        for _ in 0..80 {
+            let w = f64::sqrt(low * high);
+            if (w * tau_s).atan() + w * dead_time_s < std::f64::consts::PI { low = w } else { high = w }
+        }
+        Self {
+            gain_counts_per_s,
+            tau_s,
+            dead_time_s,
+            ultimate_gain: (1.0 + (low * tau_s).powi(2)).sqrt() / gain_counts_per_s,
+            ultimate_period_s: std::f64::consts::TAU / low,
+        }
+    }
+
     /// The ultimate point of the position behind this step: `K / (s (tau s + 1))` with the dead time, at least `floor_s`.
     fn position_ultimate(&self, floor_s: f64) -> (f64, f64) {
         let dead = self.dead_time_s.max(floor_s);

@@ -1,10 +1,11 @@
 //! A whole tuning run: probe, experiment, fit, design, verification on the machine, and the way back when anything is wrong.
 
+use crate::alternatives::{proposed, seen};
 use crate::axis::EncoderClass;
 use crate::backlash::with_backlash;
 use crate::cause::Cause;
 use crate::design::{Goal, Task, USUAL_OVERSHOOT, design_velocity};
-use crate::experiment::{Probe, go_to, rest, run_free, run_probe, run_window};
+use crate::experiment::{Probe, go_to, rest, run_free, run_probe, run_relay, run_step, run_window};
 use crate::experiment_guard::{ExperimentGuard, GuardOptions};
 use crate::fit::{Fit, fit};
 use crate::lag::LagFit;
@@ -15,7 +16,7 @@ use crate::open_loop_record::OpenLoopRecord;
 pub use crate::proposal::{design_for, propose};
 use crate::record::{Entry, Recorder};
 use crate::report::{FORMAT, Report, Verdict};
-pub use crate::request::{Excitation, Method, Request};
+pub use crate::request::{Excitation, Identification, MIDDLE_DUTY, Method, Request};
 use crate::rules::Classic;
 use crate::setup::{LoopAxis, Setup};
 use crate::verify::{check_moves, measure_lag};
@@ -117,6 +118,8 @@ fn blank<L: Law>(request: &Request<L>) -> Report<L> {
         probe: None,
         free: None,
         window: None,
+        step: None,
+        relay: None,
         classic: None,
         fit: None,
         qpps: None,
@@ -143,6 +146,10 @@ fn run<L: LawProbe>(
     if request.method == Method::Velocity && guard.setup.encoder == EncoderClass::AbsoluteWrapping {
         return Err(Cause::WrappingEncoder);
     }
+    let is_free = request.method == Method::Velocity && request.excitation == Excitation::Free;
+    if request.identification != Identification::Fit && !is_free {
+        return Err(Cause::OnlyFree);
+    }
     let mark = |report: &mut Report<L>, cause| report.causes.push(cause);
     let (probe, found) =
         guard.stretch(true, report, mark, |guard, report| identify(guard, request, report))?;
@@ -160,7 +167,20 @@ fn identify<L: Law>(
     guard.progress("Measuring the motor");
     report.probe = Some(probe);
     let found = match request.excitation {
-        Excitation::Free => identify_free(guard, &probe, report)?,
+        Excitation::Free => match request.identification {
+            Identification::Fit => identify_free(guard, &probe, report)?,
+            Identification::Step => {
+                let run = run_step(guard, &probe, request.about_duty)?;
+                report.step = Some(run);
+                let tau_s = 0.5 * (run.taus_s.0 + run.taus_s.1);
+                identify_part(guard, &probe, run.from_s, (run.gain_counts_per_s.0, tau_s))?
+            }
+            Identification::Relay => {
+                let run = run_relay(guard, &probe, request.about_duty)?;
+                report.relay = Some(run);
+                identify_part(guard, &probe, run.from_s, (run.static_gain.0, run.period_s.0))?
+            }
+        },
         Excitation::Window(width) => {
             let width = usable_width(guard, &probe, width)?;
             identify_window(guard, &probe, width, report)?
@@ -214,7 +234,15 @@ fn design<L: LawProbe>(
         task
     };
     report.task = Some(task);
-    let design = design_for(request.method, &task).ok_or(Cause::TooCoarse)?;
+    let design = match request.identification {
+        Identification::Fit => design_for(request.method, &task).ok_or(Cause::TooCoarse)?,
+        Identification::Step | Identification::Relay => {
+            report.classic = Some(seen(report, &task));
+            let (design, is_lowered) = proposed(report, &task).ok_or(Cause::RuleUnstable)?;
+            report.causes.extend(is_lowered.then_some(Cause::RuleLowered));
+            design
+        }
+    };
     propose(report, request, &task, design, guard.options.travel);
     if request.verify {
         guard.progress("Trying the gains on the machine");
@@ -311,6 +339,22 @@ fn identify_free<L: Law>(
     } else {
         full + found.model.gain_counts_per_s * (1.0 - run.full_duty)
     };
+    Ok(Found { fit: found, qpps })
+}
+
+/// The model of a step or a relay, by which its gains are tried; full duty was not given, so that the model says its speed.
+fn identify_part<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
+    probe: &Probe,
+    from_s: f64,
+    (gain, tau_s): (f64, f64),
+) -> Result<Found, Cause> {
+    let now_s = guard.now_s();
+    let record = open_loop_record_of(guard, from_s, now_s, probe.volts);
+    let limit = guard.drive_limit(probe.stall_amps);
+    let found = fit(&record, gain, tau_s, limit, brake_share(guard)).ok_or(Cause::TooCoarse)?;
+    believe(&found, guard.options.poll_s, &record)?;
+    let qpps = found.model.gain_counts_per_s * (1.0 - found.model.coulomb_duty);
     Ok(Found { fit: found, qpps })
 }
 

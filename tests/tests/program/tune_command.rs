@@ -28,8 +28,10 @@ const BRUSHWORK: &str = env!("CARGO_BIN_EXE_brushwork-for-tests");
 /// Exit codes, as `brushwork tune --help` lists them.
 const TUNED: i32 = 0;
 const FAILED: i32 = 1;
+const LINK_LOST: i32 = 3;
 const REFUSED: i32 = 4;
 const TUNED_WITH_WARNINGS: i32 = 8;
+const TOO_LATE: i32 = 11;
 const INTERRUPTED: i32 = 130;
 
 /// The user's time-out of the port, ms.
@@ -88,7 +90,11 @@ fn code_of(report: &Report) -> i32 {
     match report.verdict {
         Verdict::Tuned => TUNED,
         Verdict::TunedWithWarnings => TUNED_WITH_WARNINGS,
-        Verdict::Refused => REFUSED,
+        Verdict::Refused => match report.causes.first() {
+            Some(Cause::AnsweredLate { .. }) => TOO_LATE,
+            Some(Cause::LinkLost) => LINK_LOST,
+            _ => REFUSED,
+        },
     }
 }
 
@@ -230,6 +236,53 @@ fn the_exit_code_of_each_verdict_is_in_the_help() {
     let help = Program::start(BRUSHWORK, &["tune", "--help"]).finish(LIMIT).stdout.join("\n");
     for line in ["0  TUNED", "8  TUNED WITH WARNINGS", "4  REFUSED", "130  ended by Ctrl-C"] {
         assert!(help.contains(line), "{line}: {help}");
+    }
+}
+
+#[test]
+fn a_method_is_picked_and_its_rule_stands_beside_the_others() {
+    for (method, rule) in [("step", "SIMC (of this method)"), ("relay", "Tyreus-Luyben (of this method)")] {
+        let bench = Bench::new(|_| {});
+        let before = bench.held();
+        let ending = bench.tune(&["--method", method, "--about", "45"]).finish(LIMIT);
+        let report = bench.report();
+        assert_eq!(code(&ending), Some(code_of(&report)), "{ending:?}");
+        let is_by_it = report.step.is_some() || report.relay.is_some();
+        assert!(is_by_it || report.verdict == Verdict::Refused, "{:?}", report.causes);
+        if report.verdict != Verdict::Refused {
+            let printed = ending.stdout.join("\n");
+            for words in [rule, "phase margin", "delay margin", "bandwidth"] {
+                assert!(printed.contains(words), "{words}: {printed}");
+            }
+        }
+        assert_eq!(bench.held(), before, "{ending:?}");
+    }
+}
+
+#[test]
+fn a_report_whose_name_ends_in_html_is_one_page_with_plots() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("run.html");
+    let words = ["tune", "velocity", "-c", "sim:mcp266", "--dry-run", "--report"];
+    let words: Vec<&str> = words.into_iter().chain(path.to_str()).collect();
+    let ending = Program::start(BRUSHWORK, &words).finish(LIMIT);
+    let page = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{error}: {ending:?}"));
+    assert!(page.starts_with("<!DOCTYPE html>") && page.ends_with("</body></html>\n"));
+    assert!(page.contains("<h2>The run as it was measured</h2>"), "{page}");
+    if matches!(code(&ending), Some(TUNED | TUNED_WITH_WARNINGS)) {
+        assert!(page.contains("phase margin") && page.matches("<svg").count() >= 7, "{page}");
+    }
+}
+
+#[test]
+fn a_position_is_not_tuned_without_saying_how_far_the_axis_may_go_nor_by_a_step() {
+    for (arguments, words) in [
+        (&["tune", "position", "-c", "sim:mcp266"][..], "--turns-freely"),
+        (&["tune", "position", "--method", "step", "-c", "sim:mcp266"], "velocity loop"),
+    ] {
+        let ending = Program::start(BRUSHWORK, arguments).finish(LIMIT);
+        assert_eq!(code(&ending), Some(2), "{ending:?}");
+        assert!(ending.stderr.join("\n").contains(words), "{ending:?}");
     }
 }
 

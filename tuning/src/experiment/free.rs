@@ -119,7 +119,7 @@ fn climb<L: Law>(guard: &mut ExperimentGuard<'_, L>, full_duty: f64) -> Result<b
 }
 
 /// Holds a duty until the speed it settles at is known.
-fn settle_at<L: Law>(guard: &mut ExperimentGuard<'_, L>, duty: f64) -> Result<Settled, Cause> {
+pub(super) fn settle_at<L: Law>(guard: &mut ExperimentGuard<'_, L>, duty: f64) -> Result<Settled, Cause> {
     guard.duty(duty)?;
     // The duty ramp of up to 0.1 s is no part of the exponential.
     let mut start =
@@ -156,12 +156,12 @@ fn settle_at<L: Law>(guard: &mut ExperimentGuard<'_, L>, duty: f64) -> Result<Se
 
 /// Between which values the time constant lies, by the fit of the settling and by the rise. A load behind a spring makes the motor
 /// alone quicker.
-fn tau_bounds(fitted: f64, rise: f64) -> (f64, f64) {
+pub(super) fn tau_bounds(fitted: f64, rise: f64) -> (f64, f64) {
     (0.3 * fitted.min(rise), 1.6 * if rise.is_finite() { fitted.max(rise) } else { fitted })
 }
 
 /// Time to 63 % of a speed: no time constant is longer.
-fn rise_s<L: Law>(guard: &ExperimentGuard<'_, L>, from_s: f64, speed: f64) -> f64 {
+pub(super) fn rise_s<L: Law>(guard: &ExperimentGuard<'_, L>, from_s: f64, speed: f64) -> f64 {
     let driven = guard.points.iter().filter(|p| p.t >= from_s);
     let pairs = guard.points.windows(2).filter(|w| w[0].t >= from_s);
     let risen =

@@ -3,11 +3,15 @@
 mod backlash;
 mod free;
 mod probe;
+mod relay;
 mod rest;
+mod step;
 mod window;
 
 pub use backlash::{Backlash, measure_backlash};
 pub use free::{FreeRun, run_free};
 pub use probe::{Probe, run_probe};
+pub use relay::{Figure, RelayRun, run_relay};
 pub(crate) use rest::rest;
+pub use step::{StepRun, run_step};
 pub use window::{WindowRun, go_to, run_window};

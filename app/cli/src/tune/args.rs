@@ -10,6 +10,7 @@ use crate::{ConnectArgs, Replace};
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
     brushwork tune velocity --motor 1 --dry-run --report run.json\n  \
+    brushwork tune velocity --motor 1 --method relay --about 40 --report run.html\n  \
     brushwork tune position --motor 1 --method piv --travel -2000..2000 --max-current 10 --apply\n  \
     brushwork tune replay run.json\n\n\
     The motor turns both ways at up to full duty (--max-duty), or within --travel at less. Ctrl-C stops both motors at once and \
@@ -35,9 +36,9 @@ pub struct TuneArgs {
 #[derive(Debug, Subcommand)]
 pub enum TuneCommand {
     /// Tune the velocity loop of a motor that may turn freely.
-    Velocity(RunArgs),
+    Velocity(VelocityArgs),
     /// Tune a position loop.
-    Position(RunArgs),
+    Position(PositionArgs),
     /// Compute the gains of a report again from its raw record.
     Replay {
         /// The report.
@@ -46,6 +47,45 @@ pub enum TuneCommand {
         #[arg(long)]
         json: bool,
     },
+}
+
+/// A run of the velocity loop.
+#[derive(Debug, Args)]
+pub struct VelocityArgs {
+    /// How the motor is identified, and whose gains are proposed.
+    #[arg(long, value_enum, default_value_t = IdentificationArg::Fit)]
+    pub method: IdentificationArg,
+    /// Duty about which step or relay works, in percent.
+    #[arg(long, value_name = "PERCENT", default_value_t = 50, value_parser = clap::value_parser!(u8).range(10..=90))]
+    pub about: u8,
+    /// The rest.
+    #[command(flatten)]
+    pub run: RunArgs,
+}
+
+/// A run of a position loop.
+#[derive(Debug, Args)]
+pub struct PositionArgs {
+    /// Form of the loop; it is identified by fit (step and relay are for the velocity loop).
+    #[arg(long, value_enum, default_value_t = MethodArg::Piv)]
+    pub method: MethodArg,
+    /// The axis has no end stops: it is driven at up to full duty both ways, and its position limits stay as they are.
+    #[arg(long, conflicts_with = "travel")]
+    pub turns_freely: bool,
+    /// The rest.
+    #[command(flatten)]
+    pub run: RunArgs,
+}
+
+/// How a motor is identified.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum IdentificationArg {
+    /// A model fitted to several motions up to full duty; gains searched for on it.
+    Fit,
+    /// One step about a duty (--about), never more; gains by SIMC.
+    Step,
+    /// A relay about the speed of a duty (--about), never more; gains by Tyreus-Luyben.
+    Relay,
 }
 
 /// A run on a machine.
@@ -57,9 +97,6 @@ pub struct RunArgs {
     /// Which motor.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=2))]
     pub motor: u8,
-    /// Form of a position loop.
-    #[arg(long, value_enum, default_value_t = MethodArg::Piv)]
-    pub method: MethodArg,
     /// From 0 (soft) to 100 (stiff).
     #[arg(long, default_value_t = 50, value_parser = clap::value_parser!(u8).range(0..=100))]
     pub level: u8,
@@ -87,7 +124,7 @@ pub struct RunArgs {
     /// Only propose them; this is the default.
     #[arg(long)]
     pub dry_run: bool,
-    /// Write the report with its raw record to a file.
+    /// Write the report to a file: with its raw record, or as one page with plots where the name ends in .html.
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
     /// Whether an older report is replaced.
@@ -116,6 +153,12 @@ pub enum MethodArg {
     Pid,
     /// P over the velocity loop.
     Piv,
+    /// PIV.
+    Fit,
+    /// Not for positions.
+    Step,
+    /// Not for positions.
+    Relay,
 }
 
 /// The kinds of encoders.

@@ -6,13 +6,14 @@ mod words;
 
 use crate::messages::CliTuneMessage;
 use brushwork_core::messages::{EndedMessage, TuneMessage};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use brushwork_link::exchange::Interruption;
 use brushwork_link::{ArmScope, Event, Request, SettingsTable};
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::report::Verdict;
-use brushwork_tuning::tune::Method;
+use brushwork_tuning::tune::{Identification, MIDDLE_DUTY, Method};
 use brushwork_values::Motor;
 
 use super::client::ask;
@@ -20,7 +21,7 @@ use super::interrupt::exit_of_interruption;
 use super::settings::controller::Controller;
 use super::settings::memory::save_to_eeprom;
 use super::{Exit, Interrupt, NewFile, Output, say};
-use args::{EncoderArg, MethodArg, RunArgs};
+use args::{EncoderArg, IdentificationArg, MethodArg, RunArgs};
 pub use args::{TuneArgs, TuneCommand};
 use brushwork_core::keep::TrialKeeper;
 use brushwork_core::tune::law::{self, Report, Request as TuneRequest};
@@ -33,20 +34,52 @@ const LONGEST: Duration = Duration::from_secs(1_800);
 /// Tunes or replays.
 pub fn run(args: &TuneArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
     match &args.command {
-        TuneCommand::Velocity(args) => tune(args, Method::Velocity, out, interrupt),
+        TuneCommand::Velocity(args) => {
+            let wanted = Wanted {
+                identification: match args.method {
+                    IdentificationArg::Fit => Identification::Fit,
+                    IdentificationArg::Step => Identification::Step,
+                    IdentificationArg::Relay => Identification::Relay,
+                },
+                about_duty: f64::from(args.about) / 100.0,
+                ..Wanted::of(Method::Velocity)
+            };
+            tune(&args.run, wanted, out, interrupt)
+        }
         TuneCommand::Position(args) => {
             let method = match args.method {
                 MethodArg::Pd => Method::Pd,
                 MethodArg::Pid => Method::Pid,
-                MethodArg::Piv => Method::Piv,
+                MethodArg::Piv | MethodArg::Fit => Method::Piv,
+                MethodArg::Step | MethodArg::Relay => {
+                    return Exit::Usage.saying(CliTuneMessage::NotForPositions);
+                }
             };
-            tune(args, method, out, interrupt)
+            let has_range = args.run.encoder.is_some_and(|encoder| encoder != EncoderArg::Quadrature);
+            if args.run.travel.is_none() && !args.turns_freely && !has_range {
+                return Exit::Usage.saying(CliTuneMessage::NoTravel);
+            }
+            tune(&args.run, Wanted::of(method), out, interrupt)
         }
         TuneCommand::Replay { report, json } => replay::run(report, *json, out),
     }
 }
 
-fn tune(args: &RunArgs, method: Method, out: &mut Output, interrupt: &Interrupt) -> Exit {
+/// What is tuned, and how.
+#[derive(Clone, Copy)]
+struct Wanted {
+    method: Method,
+    identification: Identification,
+    about_duty: f64,
+}
+
+impl Wanted {
+    fn of(method: Method) -> Self {
+        Self { method, identification: Identification::Fit, about_duty: MIDDLE_DUTY }
+    }
+}
+
+fn tune(args: &RunArgs, wanted: Wanted, out: &mut Output, interrupt: &Interrupt) -> Exit {
     let mut file = args.report.as_deref().map(|path| NewFile::new(path, args.replace));
     if let Some(Err(error)) = file.as_ref().map(NewFile::check) {
         return error.into();
@@ -57,10 +90,10 @@ fn tune(args: &RunArgs, method: Method, out: &mut Output, interrupt: &Interrupt)
     };
     controller.announce();
     let mut report = None;
-    let ended = session(args, method, &controller, &mut report, interrupt);
+    let ended = session(args, wanted, &controller, &mut report, interrupt);
     // What an interrupted run has seen is kept too.
-    if let (Some(file), Some(report)) = (&mut file, &report)
-        && let Err(exit) = keep(report, file)
+    if let (Some(file), Some(report), Some(path)) = (&mut file, &report, &args.report)
+        && let Err(exit) = keep(report, file, path)
     {
         return ended.err().unwrap_or(exit);
     }
@@ -71,8 +104,8 @@ fn tune(args: &RunArgs, method: Method, out: &mut Output, interrupt: &Interrupt)
     }
 }
 
-fn keep(report: &Report, file: &mut NewFile<'_>) -> Result<(), Exit> {
-    let text = file::text_of(report).map_err(|why| {
+fn keep(report: &Report, file: &mut NewFile<'_>, path: &Path) -> Result<(), Exit> {
+    let text = file::text_for(report, path).map_err(|why| {
         say(CliTuneMessage::ReportNotWritten { why: why.to_string() });
         Exit::Failed
     })?;
@@ -82,7 +115,7 @@ fn keep(report: &Report, file: &mut NewFile<'_>) -> Result<(), Exit> {
 /// Carries out a run. What it changed is put back on every way out on which there is still a link.
 fn session(
     args: &RunArgs,
-    method: Method,
+    wanted: Wanted,
     controller: &Controller<'_>,
     found_report: &mut Option<Report>,
     interrupt: &Interrupt,
@@ -93,7 +126,7 @@ fn session(
         EncoderArg::AbsoluteWrapping => EncoderClass::AbsoluteWrapping,
     });
     let target = Target { motor: motor(args), encoder, stream: controller.client.stream };
-    let sequence = Sequence::new(Work::Tune(request(args, method)), target, ArmScope::CommandLine);
+    let sequence = Sequence::new(Work::Tune(request(args, wanted)), target, ArmScope::CommandLine);
     let mut sequence = sequence.begun_again_when_late();
     let (ended, stopped) = match carry_out(&mut sequence, controller, interrupt) {
         Ok(ended) => ended,
@@ -198,10 +231,11 @@ fn motor(args: &RunArgs) -> Motor {
     if args.motor == 2 { Motor::M2 } else { Motor::M1 }
 }
 
-fn request(args: &RunArgs, method: Method) -> TuneRequest {
+fn request(args: &RunArgs, wanted: Wanted) -> TuneRequest {
     let travel = args.travel.map(|range| (range.low, range.high));
     let (level, max_duty) = (args.level.into(), args.max_duty.into());
-    let mut request = law::request(method, level, motor(args), travel, max_duty, args.max_current);
+    let mut request = law::request(wanted.method, level, motor(args), travel, max_duty, args.max_current);
+    (request.identification, request.about_duty) = (wanted.identification, wanted.about_duty);
     request.guard.clear_winding = args.clear_lr;
     request.keep = args.apply || args.save;
     request

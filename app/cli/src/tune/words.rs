@@ -1,10 +1,14 @@
 //! A report in words and figures.
 
-use brushwork_core::tune::law::Report;
+use brushwork_core::tune::law::{AnyLaw, Report};
+use brushwork_tuning::alternatives::{Alternative, Rule, alternatives};
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::law::Law;
 use brushwork_tuning::registers::RegisterTable as _;
 use brushwork_tuning::report::Verdict;
+use brushwork_tuning::stability::StabilityMargins;
+use brushwork_tuning::tune::Identification;
+use brushwork_tuning::whatif::frequency_response;
 use serde_json::{Value, json};
 
 use crate::{Exit, Output, OutputError};
@@ -83,7 +87,41 @@ pub fn print(report: &Report, out: &mut Output) -> Result<(), OutputError> {
             range,
         );
     }
+    if let Some(step) = &report.step {
+        let (low, high) = (100.0 * step.duties.0, 100.0 * step.duties.1);
+        row("step", format!("{low:.0} to {high:.0} % duty"), String::new());
+        let (gain, doubt) = step.gain_counts_per_s;
+        row("gain of the step", format!("{gain:.0} counts/s"), format!("+- {:.1} %", 100.0 * doubt / gain));
+    }
+    if let Some(relay) = &report.relay {
+        let percent = |(value, doubt): (f64, f64)| format!("+- {:.1} %", 100.0 * doubt / value.abs());
+        let (low, high) = (100.0 * relay.duties.0, 100.0 * relay.duties.1);
+        row(
+            "relay",
+            format!("{low:.0} and {high:.0} % duty"),
+            format!("about {:.0} counts/s", relay.set_speed),
+        );
+        row(
+            "hysteresis",
+            format!("{:.0} counts/s", relay.hysteresis),
+            format!("noise {:.0} counts/s", relay.noise),
+        );
+        row("limit cycle", format!("{:.1} ms", 1e3 * relay.period_s.0), percent(relay.period_s));
+        let gain = relay.cycle_gain();
+        row("gain for the cycle", format!("{:.3e} duty/(counts/s)", gain.0), percent(gain));
+        row("gain at 0 Hz", format!("{:.0} counts/s", relay.static_gain.0), percent(relay.static_gain));
+    }
+    if let Some(seen) = report.classic.filter(|_| report.request.identification != Identification::Fit) {
+        row("Ku of the loop", format!("{:.3e} duty/(counts/s)", seen.ultimate_gain), String::new());
+        row("Tu of the loop", format!("{:.1} ms", 1e3 * seen.ultimate_period_s), String::new());
+    }
     if let Some(design) = &report.design {
+        if let Some(task) = &report.task {
+            let margins = StabilityMargins::of(&frequency_response(task, &design.gains));
+            for (name, value, _) in margins.rows().into_iter().take(5) {
+                row(name, value, String::new());
+            }
+        }
         row("sensitivity Ms", format!("{:.2}", design.ms), String::new());
         row("predicted overshoot", format!("{:.0} %", 100.0 * design.score.overshoot), String::new());
         row("predicted settling", format!("{:.0} ms", 1e3 * design.score.settling_s), String::new());
@@ -99,7 +137,32 @@ pub fn print(report: &Report, out: &mut Output) -> Result<(), OutputError> {
         );
     }
     out.table(&["", "", ""], &rows)?;
-    print_gains(report, out)
+    print_gains(report, out)?;
+    print_rules(report, out)
+}
+
+/// What the textbook rules would set, with what they promise on the same model.
+fn print_rules(report: &Report, out: &mut Output) -> Result<(), OutputError> {
+    let rules = alternatives(report);
+    let of_method = Rule::of_method(report.request.identification);
+    let row = |found: &Alternative<AnyLaw>| {
+        let of = |text: String| if found.is_stable { text } else { "unstable".to_owned() };
+        let is_own = if found.rule == of_method { " (of this method)" } else { "" };
+        vec![
+            format!("{}{is_own}", found.rule.name()),
+            format!("{:.3}", found.design.gains.velocity.p),
+            format!("{:.2}", found.design.gains.velocity.i),
+            of(format!("{:.2}", found.design.ms)),
+            of(format!("{:.0} %", 100.0 * found.design.score.overshoot)),
+            of(format!("{:.0} ms", 1e3 * found.design.score.settling_s)),
+        ]
+    };
+    let rows: Vec<Vec<String>> = rules.iter().map(row).collect();
+    if rows.is_empty() {
+        Ok(())
+    } else {
+        out.table(&["rule", "velocity P", "velocity I", "Ms", "overshoot", "settling"], &rows)
+    }
 }
 
 fn print_gains(report: &Report, out: &mut Output) -> Result<(), OutputError> {

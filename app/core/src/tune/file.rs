@@ -10,6 +10,7 @@ use serde_json::Value;
 use serde_json::error::Category;
 
 use super::law::Report;
+use super::page;
 use crate::messages::ReportFileMessage;
 use brushwork_link::bounded;
 use brushwork_link::files::{replace_file, write_new_file};
@@ -48,13 +49,23 @@ pub fn text_of(report: &Report) -> Result<String, Message> {
     Ok(text)
 }
 
+/// A report as a file of this name has it: one page with plots where it ends in .html.
+///
+/// # Errors
+/// As [`text_of`].
+pub fn text_for(report: &Report, path: &Path) -> Result<String, Message> {
+    let is_page = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("html"));
+    if is_page { Ok(page::page(report)) } else { text_of(report) }
+}
+
 /// Writes a report; `replaces` an older file only where that was agreed to.
 ///
 /// # Errors
 /// Says what was tried, why it failed, which may be that the file is there already, and what to do.
 pub fn write(report: &Report, path: &Path, replaces: bool) -> Result<(), Message> {
     let write = if replaces { replace_file } else { write_new_file };
-    let written = text_of(report).and_then(|text| write(path, text.as_bytes()).map_err(Message::error));
+    let written =
+        text_for(report, path).and_then(|text| write(path, text.as_bytes()).map_err(Message::error));
     written.map_err(|error| ReportFileMessage::NotWritten { path: path.display().to_string(), error }.into())
 }
 

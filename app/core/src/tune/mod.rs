@@ -8,6 +8,7 @@
 pub mod file;
 pub mod law;
 pub mod live;
+pub mod page;
 pub mod sequence;
 
 use crate::messages::{CoreActMessage, CoreCauseMessage, CoreRemedyMessage};

@@ -19,6 +19,21 @@ pub enum GuidedAction {
     Cancel,
 }
 
+/// What a slider spans of a travel that has no ends to speak of: so long at full speed to either side of where the motor is, s, and so many
+/// counts at the least. It moves on in steps of as much, so that a slider stays while a motor runs.
+const NEAR_S: f64 = 5.0;
+const NEAR_COUNTS: f64 = 10_000.0;
+
+/// The part of a travel that is near the motor: all of it, unless it is far wider than what the motor does in some seconds.
+fn near((low, high): (f64, f64), counts: f64, full_speed: f64) -> (f64, f64) {
+    let near = (NEAR_S * full_speed).max(NEAR_COUNTS);
+    if high - low <= 8.0 * near {
+        return (low, high);
+    }
+    let middle = (counts / near).round() * near;
+    ((middle - 2.0 * near).max(low), (middle + 2.0 * near).min(high))
+}
+
 impl Connection {
     /// Whether a job moves the motors, or may; the sliders rest meanwhile.
     pub fn is_guided(&self) -> bool {
@@ -104,6 +119,15 @@ impl Connection {
         }
     }
 
+    /// The part of each travel that sliders and jogs span.
+    pub fn near_travels(&self) -> Travels {
+        let travels = self.travels();
+        Motor::BOTH.map(|motor| {
+            let full_speed = self.top_speeds()[motor.index()];
+            travels[motor.index()].map(|travel| near(travel, self.seen(motor).counts, full_speed))
+        })
+    }
+
     /// Where a motor was seen last.
     pub fn seen(&self, motor: Motor) -> Seen {
         let (position, velocity) = match motor {
@@ -136,5 +160,24 @@ impl Connection {
                 }
             }
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_travel_without_ends_to_speak_of_is_cut_to_what_is_near_the_motor() {
+        let endless = (-2e9, 2e9);
+        assert_eq!(near(endless, 0.0, 10_000.0), (-100_000.0, 100_000.0));
+        assert_eq!(near(endless, 60_000.0, 10_000.0), (-50_000.0, 150_000.0));
+        assert_eq!(
+            near(endless, 60_100.0, 10_000.0),
+            near(endless, 60_000.0, 10_000.0),
+            "it stays for a while"
+        );
+        assert_eq!(near((-2_000.0, 2_000.0), 1_500.0, 10_000.0), (-2_000.0, 2_000.0));
+        assert_eq!(near((0.0, 2e9), 0.0, 0.0), (0.0, 20_000.0));
     }
 }

@@ -72,7 +72,7 @@ fn controls_ui(ui: &mut Ui, model: &mut Model) {
 
 fn slider_ui(ui: &mut Ui, model: &mut Model, motor: Motor) {
     let connection = &mut model.front;
-    let travels = connection.travels();
+    let travels = connection.near_travels();
     let Some((low, high)) = travels[motor.index()] else {
         ui.add(
             Label::new(why_no_slider(connection.settings.unit().is_some_and(UnitSettings::is_known)))
@@ -106,6 +106,6 @@ fn why_no_slider(is_known: bool) -> &'static str {
 }
 
 fn jog(connection: &mut Connection, motor: Motor, held: Option<Direction>) {
-    let (travels, seen) = (connection.travels(), Motor::BOTH.map(|motor| connection.seen(motor)));
+    let (travels, seen) = (connection.near_travels(), Motor::BOTH.map(|motor| connection.seen(motor)));
     connection.position.jog(motor, held, travels, seen);
 }

@@ -28,12 +28,12 @@ pub fn files_ui(ui: &mut Ui, tuning: &mut Tuning, which: Loop, commands: &mut Co
         ui.label("Report");
         let width = (ui.available_width() - 12.0).clamp(120.0, 240.0);
         ui.allocate_ui(vec2(width, ui.spacing().interact_size.y), |ui| {
-            text_field_ui(ui, &mut tuning.path, "Report file", "Path of a .json file");
+            text_field_ui(ui, &mut tuning.path, "Report file", "Path of a .json or .html file");
         });
         let path = tuning.path.trim().to_owned();
         let has_run = tuning.front(which).run().is_some();
         let save = ui.add_enabled(has_run, Button::new("Save report"));
-        let hint = "The run with its raw record, as `brushwork tune --report` writes it; without a path it asks for one";
+        let hint = "The run with its raw record, as `brushwork tune --report` writes it; as one page with plots where the name ends in .html; without a path it asks for one";
         if save.on_hover_text(hint).clicked() {
             if path.is_empty() {
                 let name = format!("tuning-{}.json", tuning.motor(which));

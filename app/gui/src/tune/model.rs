@@ -6,7 +6,7 @@ use brushwork_core::tune::law::{AnyRegisters, Report, Request as TuneRequest, Se
 use brushwork_link::{Event, Identity, Message, Sample, SettingValue, Stream};
 use brushwork_tuning::axis::EncoderClass;
 use brushwork_tuning::report::Verdict;
-use brushwork_tuning::tune::Method;
+use brushwork_tuning::tune::{Identification, MIDDLE_DUTY, Method};
 use brushwork_values::Motor;
 
 use super::calibration::Calibration;
@@ -53,6 +53,10 @@ pub struct Setting {
     /// 0 (soft) to 100 (stiff).
     pub level: f64,
     pub method: Method,
+    /// How the motor is identified, and whose gains are proposed.
+    pub identification: Identification,
+    /// Duty about which a step or a relay works.
+    pub about_percent: f64,
     /// Whether it may turn without end; otherwise it stays within the travel.
     pub turns_freely: bool,
     /// Lowest and highest count.
@@ -74,6 +78,8 @@ impl Setting {
         Self {
             level: 50.0,
             method: if which == Loop::Velocity { Method::Velocity } else { Method::Piv },
+            identification: Identification::Fit,
+            about_percent: 100.0 * MIDDLE_DUTY,
             turns_freely: true,
             travel: (-2000.0, 2000.0),
             is_travel_chosen: false,
@@ -90,7 +96,21 @@ impl Setting {
         let travel = (!self.turns_freely).then_some((low.round() as i64, high.round() as i64));
         let max_amps = (self.max_amps > 0.0).then_some(self.max_amps);
         let request = request(self.method, self.level, motor, travel, self.max_duty_percent, max_amps);
-        TuneRequest { verify: self.tries, ..request }
+        TuneRequest {
+            verify: self.tries,
+            identification: self.identification,
+            about_duty: self.about_percent / 100.0,
+            ..request
+        }
+    }
+
+    /// Whether it is still to be said how far the axis may go: a position loop is driven at full duty both ways where it turns freely. An absolute
+    /// encoder has its range.
+    pub fn lacks_travel(&self) -> bool {
+        self.method != Method::Velocity
+            && self.turns_freely
+            && !self.is_travel_chosen
+            && self.encoder == EncoderClass::Quadrature
     }
 }
 

@@ -32,6 +32,15 @@ fn steps(cause: Cause) -> &'static [&'static str] {
             "If it stays, it is the line: look at the link's figures for lost replies, check the cable, and try without a radio, a network or \
              an adapter on the way.",
         ],
+        Cause::OnlyFree
+        | Cause::NoRoomForStep
+        | Cause::StepUnclear
+        | Cause::NoLimitCycle
+        | Cause::RuleUnstable
+        | Cause::RuleLowered => &[
+            "Choose By fit: it needs no steady speed at two duties and no limit cycle.",
+            "Or try about another duty, and allow more of it.",
+        ],
         Cause::OutsideTravel => &[
             "Move the axis by hand, or on the PWM screen with little duty, until its counts lie within the travel.",
             "Or give a travel around where it stands.",

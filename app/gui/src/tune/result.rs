@@ -40,6 +40,7 @@ pub fn result_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Com
         ui.spacing_mut().interact_size.y = 20.0;
         figures_ui(ui, model, which);
         gains_ui(ui, model, which, held);
+        rules_ui(ui, model, which);
         model_ui(ui, model, which);
     }
     super::runs::runs_ui(ui, model, which);
@@ -169,6 +170,42 @@ fn gains_ui(ui: &mut Ui, model: &mut Model, which: Loop, held: Option<AnyRegiste
     });
     if wanted != before {
         run.consider(wanted);
+    }
+}
+
+/// Textbook rules on the same model, each to be considered, tried and applied like the run's own gains.
+fn rules_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
+    let Some(run) = model.front.tune.front_mut(which).run_mut() else { return };
+    if run.rules.is_empty() {
+        return;
+    }
+    let shown = run.shown.as_ref().map(|shown| shown.registers);
+    let mut wanted = None;
+    ui.add_space(4.0);
+    ui.horizontal_wrapped(|ui| {
+        ui.label("Rules").on_hover_text(
+            "Gains of textbook rules on this run's model; nothing is sent until they are applied or verified",
+        );
+        for found in &run.rules {
+            let is_shown = shown.is_some_and(|shown| shown.same_gains(&found.registers));
+            let hint = if found.is_stable {
+                format!(
+                    "P {:.3}, I {:.2}: Ms {:.2}, overshoot {:.0} % on the model",
+                    found.design.gains.velocity.p,
+                    found.design.gains.velocity.i,
+                    found.design.ms,
+                    100.0 * found.design.score.overshoot
+                )
+            } else {
+                "Unstable on the model".to_owned()
+            };
+            if ui.selectable_label(is_shown, found.rule.name()).on_hover_text(hint).clicked() {
+                wanted = Some(found.registers);
+            }
+        }
+    });
+    if let Some(registers) = wanted {
+        run.consider(registers);
     }
 }
 

@@ -2,6 +2,7 @@
 
 use brushwork_core::tune::law::{AnyLaw, AnyRegisters, Report, Task, Trace, Trial, TrialRequest};
 use brushwork_link::exchange::Interruption;
+use brushwork_tuning::alternatives::{Alternative, alternatives};
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::law::Law;
 use brushwork_tuning::model::Gains;
@@ -62,6 +63,8 @@ pub struct Run {
     pub first: Option<AnyRegisters>,
     /// The whole run, where it was refused: what was seen.
     pub seen: Option<Trace>,
+    /// What textbook rules would set on its model.
+    pub rules: Vec<Alternative<AnyLaw>>,
     /// Drawn under other runs.
     pub is_overlaid: bool,
     /// What is drawn of the gains that the controller holds.
@@ -87,6 +90,7 @@ impl Run {
             shown: None,
             first,
             seen,
+            rules: alternatives(&report),
             is_overlaid: true,
             current: None,
             looked_at: None,

@@ -1,7 +1,7 @@
 //! What is set before a run: which motor, how stiff, by which method, and how far the axis may go.
 
 use brushwork_tuning::axis::EncoderClass;
-use brushwork_tuning::tune::Method;
+use brushwork_tuning::tune::{Identification, Method};
 use brushwork_values::Motor;
 use egui::{Button, ComboBox, Label, RichText, Ui};
 
@@ -66,8 +66,13 @@ fn motor_row_ui(
     if look.on_hover_text("Shows its results below").clicked() {
         model.front.tune.look_at(which, motor);
     }
-    let tune = ui.add_enabled(can_start, Button::new(format!("Tune {motor}")));
-    let tune = tune.on_disabled_hover_text("Arm this screen first");
+    let lacks_travel = model.front.tune.panel(which, motor).setting.lacks_travel();
+    let tune = ui.add_enabled(can_start && !lacks_travel, Button::new(format!("Tune {motor}")));
+    let tune = tune.on_disabled_hover_text(if lacks_travel {
+        "Say first how far the axis may go: Turns freely, or Within"
+    } else {
+        "Arm this screen first"
+    });
     if tune.on_hover_text("Moves the motor, at up to the highest duty").clicked() {
         commands.push(Command::Tune(TuneAction::Start(motor)));
     }
@@ -112,6 +117,43 @@ fn options_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
     });
     if !is_wide {
         ui.horizontal(|ui| limits_ui(ui, setting, has_encoders));
+    }
+    if which == Loop::Velocity {
+        ui.horizontal(|ui| identification_ui(ui, setting));
+    }
+}
+
+/// How the motor of a velocity loop is identified.
+fn identification_ui(ui: &mut Ui, setting: &mut Setting) {
+    ui.label("Identify");
+    for (identification, name, hint) in [
+        (
+            Identification::Fit,
+            "By fit",
+            "Several motions up to full duty, a model fitted to them, and gains searched for on it",
+        ),
+        (Identification::Step, "By step", "One step about a duty and never more; gains by the rule SIMC"),
+        (
+            Identification::Relay,
+            "By relay",
+            "Astrom and Hagglund's relay about the speed of a duty, until the motor goes round in a limit cycle; gains by the rule of \
+             Tyreus and Luyben",
+        ),
+    ] {
+        ui.radio_value(&mut setting.identification, identification, name).on_hover_text(hint);
+    }
+    if setting.identification != Identification::Fit {
+        ui.label("about");
+        let duty = Numeric {
+            name: "About duty",
+            unit: "%",
+            range: 10.0..=90.0,
+            decimals: 0,
+            step: 5.0,
+            width: 62.0,
+        };
+        duty.ui(ui, &mut setting.about_percent)
+            .on_hover_text("The duty that the step or the relay lies about");
     }
 }
 
@@ -161,8 +203,11 @@ fn travel_ui(ui: &mut Ui, setting: &mut Setting, held: Option<(f64, f64)>) {
             ("Its whole range", "The axis stays between 40 and 4055 counts, and within the position limits")
         }
     };
-    let free = ui.radio_value(&mut setting.turns_freely, true, word).on_hover_text(hint);
-    setting.is_travel_chosen |= free.clicked();
+    let is_free = setting.turns_freely && !setting.lacks_travel();
+    let free = ui.radio(is_free, word).on_hover_text(hint);
+    if free.clicked() {
+        (setting.turns_freely, setting.is_travel_chosen) = (true, true);
+    }
     let bound = ui.radio_value(&mut setting.turns_freely, false, "Within");
     if bound.on_hover_text("The axis stays between two counts and never runs at full speed").clicked() {
         setting.is_travel_chosen = true;

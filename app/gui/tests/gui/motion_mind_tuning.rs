@@ -154,6 +154,7 @@ fn a_position_loop_is_tuned_by_both_methods_in_both_protocols() {
     for (method, protocol) in [("PD", Protocol::Binary), ("PID", Protocol::Text)] {
         let config = MotionMindConfig { protocol, ..MotionMindConfig::new(Mode::SerialPid) };
         let mut bench = opened_with(config, "Position");
+        bench.press("Turns freely");
         bench.press(method);
         bench.press("Tune M1");
         finish(&mut bench);
@@ -171,6 +172,7 @@ fn a_position_loop_is_tuned_by_both_methods_in_both_protocols() {
 #[test]
 fn the_level_and_registers_by_hand_redraw_the_prediction_and_send_nothing() {
     let mut bench = opened("Position");
+    bench.press("Turns freely");
     bench.press("PD");
     bench.press("Tune M1");
     finish(&mut bench);

@@ -16,10 +16,13 @@ use brushwork_mcp_sim::motion::MotionSettings;
 use brushwork_plant::presets;
 use brushwork_plant::world::WorldAction;
 use brushwork_tuning::axis::EncoderClass;
+use brushwork_tuning::registers::RegisterTable as _;
 use brushwork_tuning::report::Verdict;
+use brushwork_tuning::tune::Identification;
 use brushwork_tuning::winding::{Winding, WindingUnknown};
 use brushwork_values::Motor;
 use egui::{Key, Modifiers};
+use egui_kittest::kittest::NodeT as _;
 
 fn config(preset: &str) -> ControllerConfig {
     let axis = presets::lookup(preset).expect("a preset");
@@ -76,6 +79,9 @@ fn assert_at_rest(bench: &mut Bench) {
 fn running(preset: &str, screen: &str) -> (Bench, MotionSettings) {
     let mut bench = opened(preset, screen);
     let before = held(&bench, Motor::M1);
+    if screen == "Position Settings" {
+        bench.press("Turns freely");
+    }
     bench.press("Tune M1");
     assert!(bench.model().front.tune.is_running());
     (bench, before)
@@ -186,6 +192,11 @@ fn a_position_loop_is_tuned_by_each_method_and_applied_whole() {
     for (method, has_velocity) in [("PD", false), ("PID", false), ("PIV", true)] {
         let mut bench = opened("small-gearmotor", "Position Settings");
         bench.press(method);
+        assert!(
+            bench.button("Tune M1").accesskit_node().is_disabled(),
+            "how far the axis may go is to be said first"
+        );
+        bench.press("Turns freely");
         bench.press("Tune M1");
         finish(&mut bench);
         let tuned = run(&mut bench, Loop::Position);
@@ -198,6 +209,31 @@ fn a_position_loop_is_tuned_by_each_method_and_applied_whole() {
         bench.press("Apply (RAM)");
         bench.pass_ms(4000);
         assert_holds(&bench, gains);
+    }
+}
+
+#[test]
+fn step_and_relay_are_picked_and_the_rules_on_their_model_are_considered_beside_their_own() {
+    for (label, identification, other) in
+        [("By step", Identification::Step, "Tyreus-Luyben"), ("By relay", Identification::Relay, "SIMC")]
+    {
+        let mut bench = opened("small-gearmotor", "Velocity Settings");
+        bench.press(label);
+        bench.enter("About duty", "45");
+        bench.press("Tune M1");
+        finish(&mut bench);
+        let tuned = run(&mut bench, Loop::Velocity);
+        assert_ne!(tuned.report.verdict, Verdict::Refused, "{label}: {:?}", tuned.report.causes);
+        assert_eq!(tuned.report.request.identification, identification);
+        assert!(tuned.tried.is_some(), "its gains were tried on the machine");
+        let before = held(&bench, Motor::M1);
+        let rule = tuned.rules.iter().find(|found| found.rule.name() == other).expect("it is listed");
+        press_below(&mut bench, other);
+        bench.pass_ms(300);
+        let shown = run(&mut bench, Loop::Velocity).shown.expect("it is on the model");
+        assert!(shown.registers.same_gains(&rule.registers), "{label}: {other} is considered");
+        assert!(bench.sees_part("Considered on the model only"));
+        assert_eq!(held(&bench, Motor::M1), before, "nothing was sent");
     }
 }
 

@@ -5,6 +5,7 @@ mod busy_host;
 mod late_host;
 mod laws;
 mod loads;
+mod methods;
 mod mind_guard;
 mod mind_table;
 mod mind_trial;

@@ -1,0 +1,224 @@
+//! The textbook rules beside this tuner's own design, on what one run has found: each as gains and registers, and with what it promises on the
+//! same model.
+//!
+//! A rule sees what its experiment gives: gain, time constant and dead time of a step, or the response at the frequency of a relay. The dead time is
+//! never taken as shorter than the lag of the controller's own loop, which the run has measured: an experiment that this program does from
+//! outside does not have that in it, and rules without it are useless (SIMC: good on 40 % of 42 foreign controllers with it, on 11 %
+//! without).
+
+use crate::design::{Design, Task, design_velocity};
+use crate::law::Law;
+use crate::linear::{DiscretePlant, LoopPlant};
+use crate::model::{Gains, Pid};
+use crate::report::Report;
+use crate::request::{Identification, Method};
+use crate::rules::Classic;
+use crate::ticks::velocity_test;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// The highest maximum sensitivity with which a rule is tried on a machine; beyond it its gain is lowered.
+const MOST_MS: f64 = 1.8;
+/// By how much at a time, and how often at the most: to a hundredth.
+const LOWERED: f64 = 0.85;
+const MOST_LOWERED: usize = 28;
+
+/// Where gains come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Rule {
+    /// This tuner's search on the model.
+    Search,
+    /// Skogestad 2003, the closed time constant as long as the dead time.
+    Simc,
+    /// Astrom and Hagglund 2004, of a step.
+    Amigo,
+    /// A closed time constant of half the open one.
+    Lambda,
+    /// Tyreus and Luyben 1992, of the ultimate point.
+    TyreusLuyben,
+    /// Ziegler and Nichols 1942: of a step, or of the ultimate point where the run was a relay.
+    ZieglerNichols,
+    /// Cohen and Coon 1953, of a step.
+    CohenCoon,
+}
+
+impl Rule {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::Search,
+        Self::Simc,
+        Self::Amigo,
+        Self::Lambda,
+        Self::TyreusLuyben,
+        Self::ZieglerNichols,
+        Self::CohenCoon,
+    ];
+
+    /// Its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Search => "Brushwork",
+            Self::Simc => "SIMC",
+            Self::Amigo => "AMIGO",
+            Self::Lambda => "Lambda",
+            Self::TyreusLuyben => "Tyreus-Luyben",
+            Self::ZieglerNichols => "Ziegler-Nichols",
+            Self::CohenCoon => "Cohen-Coon",
+        }
+    }
+
+    /// The rule whose gains a method proposes.
+    #[must_use]
+    pub fn of_method(identification: Identification) -> Self {
+        match identification {
+            Identification::Fit => Self::Search,
+            Identification::Step => Self::Simc,
+            Identification::Relay => Self::TyreusLuyben,
+        }
+    }
+
+    /// The PI gains that it gives: P over QPPS and the integral time, s. The search has no formula.
+    fn pi(self, seen: &Classic, by_relay: bool) -> Option<(f64, f64)> {
+        let (k, t, d) = (seen.gain_counts_per_s, seen.tau_s, seen.dead_time_s);
+        let (ku, tu) = (seen.ultimate_gain, seen.ultimate_period_s);
+        let r = d / t;
+        Some(match self {
+            Self::Search => return None,
+            Self::Simc => (t / (k * 2.0 * d), t.min(8.0 * d)),
+            Self::Amigo => (
+                0.15 / k + (0.35 - d * t / (d + t).powi(2)) * t / (k * d),
+                0.35 * d + 13.0 * d * t * t / (t * t + 12.0 * d * t + 7.0 * d * d),
+            ),
+            Self::Lambda => (t / (k * (0.5 * t + d)), t),
+            Self::TyreusLuyben => (ku / 3.2, 2.2 * tu),
+            Self::ZieglerNichols if by_relay => (0.45 * ku, tu / 1.2),
+            Self::ZieglerNichols => (0.9 * t / (k * d), d / 0.3),
+            Self::CohenCoon => (t / (k * d) * (0.9 + r / 12.0), d * (30.0 + 3.0 * r) / (9.0 + 20.0 * r)),
+        })
+    }
+}
+
+/// What a rule comes to on a run's model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Alternative<L: Law> {
+    /// The rule.
+    pub rule: Rule,
+    /// What it promises; its gains are as the registers hold them.
+    pub design: Design,
+    /// Whether the loop is stable on the model, with the longest lag that is likely too.
+    pub is_stable: bool,
+    /// Its registers.
+    pub registers: L::Registers,
+}
+
+/// The gain, time constant and dead time, and the ultimate point, that the rules are given on a run.
+#[must_use]
+pub fn seen<L: Law>(report: &Report<L>, task: &Task<L>) -> Classic {
+    let lag_s = task.lag.total_s(task.law.tick_s()) + 1.5 * task.law.tick_s();
+    let (gain, tau_s, dead_s) = match (report.step, report.relay) {
+        (Some(step), _) => {
+            let dead_s = report.fit.map_or(0.0, |fit| fit.offset_s);
+            (step.gain_counts_per_s.0, 0.5 * (step.taus_s.0 + step.taus_s.1), dead_s)
+        }
+        (None, Some(relay)) => {
+            let omega = TAU / relay.period_s.0;
+            let ratio = relay.static_gain.0 / relay.response.0;
+            let tau_s = (ratio * ratio - 1.0).max(0.0).sqrt() / omega;
+            let dead_s = (relay.lag_deg.0.to_radians() - (omega * tau_s).atan()) / omega;
+            (relay.static_gain.0, tau_s.max(task.law.tick_s()), dead_s)
+        }
+        (None, None) => (task.plant.gain_counts_per_s, task.plant.tau_s, 0.0),
+    };
+    Classic::of_model(gain, tau_s, dead_s.max(lag_s))
+}
+
+/// All rules on a run of the velocity loop; none on other runs, and on those without a model.
+#[must_use]
+pub fn alternatives<L: Law>(report: &Report<L>) -> Vec<Alternative<L>> {
+    let (Some(task), Some(before)) = (report.task, report.before) else { return Vec::new() };
+    if report.request.method != Method::Velocity {
+        return Vec::new();
+    }
+    let seen = seen(report, &task);
+    let of = |rule: Rule| {
+        let design = match gains_of(rule, report, &task, &seen) {
+            Some(gains) => promised(&task, gains),
+            None => design_velocity(&task)?,
+        };
+        Some(Alternative {
+            rule,
+            design,
+            is_stable: is_stable(&task, &design.gains),
+            registers: task.law.registers(&before.held, &design.gains, task.qpps, None),
+        })
+    };
+    Rule::ALL.into_iter().filter_map(of).collect()
+}
+
+/// What the rule of a method proposes, lowered where it would leave too little margin or make too much noise, and whether it was.
+pub(crate) fn proposed<L: Law>(report: &Report<L>, task: &Task<L>) -> Option<(Design, bool)> {
+    let rule = Rule::of_method(report.request.identification);
+    let mut gains = gains_of(rule, report, task, &seen(report, task))?;
+    for lowered in 0..MOST_LOWERED {
+        let design = promised(task, gains);
+        let is_fit = design.ms <= MOST_MS && design.noise_duty <= task.goal.noise_duty;
+        if is_fit && is_stable(task, &gains) {
+            return Some((design, lowered > 0));
+        }
+        gains.velocity.p *= LOWERED;
+        gains.velocity.i *= LOWERED;
+    }
+    None
+}
+
+fn gains_of<L: Law>(rule: Rule, report: &Report<L>, task: &Task<L>, seen: &Classic) -> Option<Gains> {
+    let (gain, time_s) = rule.pi(seen, report.relay.is_some())?;
+    let p = gain * task.qpps;
+    Some(Gains { velocity: Pid { p, i: p / time_s, d: 0.0 }, ..Gains::default() })
+}
+
+fn promised<L: Law>(task: &Task<L>, gains: Gains) -> Design {
+    let gains = task.law.rounded(&gains, task.qpps);
+    let margins = on_model(task, task.lag).margins(&gains, task.qpps);
+    Design {
+        gains,
+        score: velocity_test(&task.plant, &task.law, task.lag, &gains, task.qpps),
+        ms: margins.ms,
+        noise_duty: margins.noise_duty * task.noise_factor,
+    }
+}
+
+fn is_stable<L: Law>(task: &Task<L>, gains: &Gains) -> bool {
+    [task.lag, task.worst_lag].iter().all(|lag| on_model(task, *lag).spectral_radius(gains, task.qpps) < 1.0)
+}
+
+fn on_model<L: Law>(task: &Task<L>, lag: crate::model::Lag) -> LoopPlant {
+    LoopPlant::new(DiscretePlant::of(&task.plant, task.law.tick_s()), &task.law, lag)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_rule_gives_what_its_paper_says_for_a_known_motor() {
+        // Gain 10,000 counts/s, 100 ms, dead time 10 ms.
+        let seen = Classic::of_model(10_000.0, 0.1, 0.01);
+        let close = |rule: Rule, by_relay: bool, gain: f64, time_s: f64| {
+            let (p, ti) = rule.pi(&seen, by_relay).expect("it has a formula");
+            assert!((p * 10_000.0 / gain - 1.0).abs() < 1e-3, "{rule:?}: P {}", p * 10_000.0);
+            assert!((ti / time_s - 1.0).abs() < 1e-3, "{rule:?}: {ti} s");
+        };
+        close(Rule::Simc, false, 5.0, 0.08);
+        close(Rule::Lambda, false, 10.0 / 6.0, 0.1);
+        close(Rule::ZieglerNichols, false, 9.0, 0.01 / 0.3);
+        close(Rule::CohenCoon, false, 10.0 * (0.9 + 0.1 / 12.0), 0.01 * 30.3 / 11.0);
+        close(Rule::Amigo, false, 0.15 + (0.35 - 0.001 / 0.0121) * 10.0, 0.0035 + 0.0013 / 0.0227);
+        // The phase of -180 degrees is at atan(w 0.1) + w 0.01 = pi: w = 163.1 rad/s, gain 16.34 / 10,000.
+        close(Rule::TyreusLuyben, true, 16.34 / 3.2, 2.2 * TAU / 163.1);
+        close(Rule::ZieglerNichols, true, 0.45 * 16.34, TAU / 163.1 / 1.2);
+        assert_eq!(Rule::Search.pi(&seen, false), None);
+    }
+}

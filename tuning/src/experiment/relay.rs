@@ -1,0 +1,279 @@
+//! The relay of Astrom and Hagglund about a set speed: the duty is switched up and down as the speed crosses it, until the motor goes round in a
+//! limit cycle.
+//!
+//! The relay is this program's, so that the cycle has the delay of the line in it. What is read off it has not: duties and counts come with
+//! their times, and from both over the same cycles follows the motor's own response at that frequency (Astrom and Hagglund, "Advanced PID
+//! Control", ISA 2006, section 8.3). The set speed is above what the middle duty gives, so that the cycle is not symmetrical, and its mean speed
+//! over its mean duty is the gain at frequency zero.
+
+use super::Probe;
+use super::free::{rise_s, settle_at, tau_bounds};
+use super::step::about;
+use crate::cause::Cause;
+use crate::experiment_guard::{ExperimentGuard, Input, Point};
+use crate::law::Law;
+use nalgebra::{Complex, DMatrix, DVector};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// Half the height of the relay, as duty.
+const HALF_HEIGHT: f64 = 0.22;
+/// How far the set speed is above that of the middle duty, in that part of the upper half of the relay which the motor follows.
+const SET_SHARE: f64 = 0.4;
+/// Polls at the middle duty from which the noise of the speed is taken, and the hysteresis in its standard deviations: noise crosses three of
+/// them in one poll of 370.
+const NOISE_POLLS: usize = 40;
+const HYSTERESIS: f64 = 3.0;
+/// Polls that a speed is taken over: so many to a time constant, at the least and at the most. More make less noise, and a longer delay.
+const SPEED_POLLS: (f64, f64, f64) = (6.0, 2.0, 8.0);
+/// Cycles that are left out at first, that are looked at together, and such groups: a spread wants three at least.
+const FIRST_CYCLES: usize = 2;
+const GROUP: usize = 3;
+const GROUPS: usize = 4;
+/// Longest relay, s.
+const LONGEST_S: f64 = 30.0;
+/// The amplitude at the least, in hysteresis; and spread of the period between groups, relative, beyond which there is no limit cycle.
+const LEAST_AMPLITUDE: f64 = 0.8;
+const MOST_SPREAD: f64 = 0.3;
+/// The 97.5 % point of Student's t with three degrees of freedom: the intervals are of four groups.
+const STUDENT: f64 = 3.182;
+/// Half of the 95 % interval of the gain, relative, beyond which the asymmetry tells nothing.
+const WIDEST_GAIN: f64 = 0.3;
+
+/// A figure and half of its 95 % interval.
+pub type Figure = (f64, f64);
+
+/// What a relay read off.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RelayRun {
+    /// When its record begins, and when the relay took over, s.
+    pub from_s: f64,
+    /// When the relay took over, s.
+    pub relay_s: f64,
+    /// Duties that it switches between.
+    pub duties: (f64, f64),
+    /// Speed that the middle of them gives, and the one that it switches about, counts/s.
+    pub middle_speed: f64,
+    /// The speed that it switches about, counts/s.
+    pub set_speed: f64,
+    /// Standard deviation of the speed at a constant duty, counts/s.
+    pub noise: f64,
+    /// How far the speed goes beyond the set one before it switches, counts/s.
+    pub hysteresis: f64,
+    /// Cycles that the figures are of.
+    pub cycles: usize,
+    /// Period of the limit cycle, s.
+    pub period_s: Figure,
+    /// Amplitude of the speed's first harmonic, counts/s.
+    pub amplitude: Figure,
+    /// The motor's response at that frequency: speed over duty, counts/s.
+    pub response: Figure,
+    /// By how much it lags there, from the duty's stamp to the count's, degrees.
+    pub lag_deg: Figure,
+    /// Speed per duty at frequency zero, counts/s, from the asymmetry.
+    pub static_gain: Figure,
+}
+
+impl RelayRun {
+    /// Gain that would keep the limit cycle without the delay of this program's relay: duty per counts/s, with half of its interval.
+    #[must_use]
+    pub fn cycle_gain(&self) -> Figure {
+        (1.0 / self.response.0, self.response.1 / self.response.0.powi(2))
+    }
+}
+
+/// Runs it about the speed of a duty. The motor is braked when it returns.
+pub fn run_relay<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
+    probe: &Probe,
+    duty: f64,
+) -> Result<RelayRun, Cause> {
+    guard.monitor.start_duty = probe.start_duty;
+    guard.monitor.stall_amps = probe.stall_amps;
+    guard.monitor.drive_limit = guard.drive_limit(probe.stall_amps);
+    let duties = about(guard, probe, duty, HALF_HEIGHT)?;
+    let middle_duty = 0.5 * (duties.0 + duties.1);
+    let from_s = guard.now_s();
+    let middle = settle_at(guard, middle_duty)?;
+    let rise = rise_s(guard, from_s, middle.speed);
+    guard.monitor.stopping_s = middle.tau_s.min(rise);
+    guard.monitor.tau_bounds_s = Some(tau_bounds(middle.tau_s, rise));
+    let polls =
+        (middle.tau_s / guard.options.poll_s / SPEED_POLLS.0).clamp(SPEED_POLLS.1, SPEED_POLLS.2) as usize;
+    let noise = speed_noise(guard, polls)?;
+    let hysteresis = HYSTERESIS * noise;
+    // Speed per duty as far as it is known: friction takes the starting duty or less.
+    let slope = middle.speed / (middle_duty - 0.5 * probe.start_duty).max(0.05);
+    let set_speed = middle.speed + SET_SHARE * slope * (duties.1 - middle_duty);
+    let relay_s = guard.now_s();
+    let switched_up_s = switch(guard, polls, duties, (set_speed, hysteresis))?;
+    guard.duty(0.0)?;
+    guard.poll_for((3.0 * middle.tau_s).clamp(0.06, 0.5), false)?;
+    let kept = switched_up_s.get(FIRST_CYCLES..).unwrap_or_default();
+    let groups: Vec<Group> = kept
+        .windows(GROUP + 1)
+        .step_by(GROUP)
+        .filter_map(|ups| Group::of(guard, (ups[0], ups[GROUP]), ups))
+        .collect();
+    if groups.len() < GROUPS {
+        return Err(Cause::NoLimitCycle);
+    }
+    let figure = |of: &dyn Fn(&Group) -> f64| mean_and_doubt(&groups.iter().map(of).collect::<Vec<f64>>());
+    let gain = |group: &Group| (group.mean_speed - middle.speed) / (group.mean_duty - middle_duty);
+    // Each group misses what its last cycle left of the speed, which the next one has: over all of them that is left once. So the interval, which
+    // is that of the mean of the groups, is on the safe side.
+    let whole = kept.first().zip(kept.last()).and_then(|(from, to)| Group::of(guard, (*from, *to), kept));
+    let whole = whole.ok_or(Cause::NoLimitCycle)?;
+    let by_groups = figure(&gain).1;
+    // The speed of the middle duty is known no better than it settled.
+    let off = (whole.mean_speed - middle.speed).abs().max(1e-9);
+    let static_gain = (gain(&whole), by_groups.hypot(gain(&whole) * middle.interval * middle.speed / off));
+    let run = RelayRun {
+        from_s,
+        relay_s,
+        duties,
+        middle_speed: middle.speed,
+        set_speed,
+        noise,
+        hysteresis,
+        cycles: groups.len() * GROUP,
+        period_s: figure(&|group| group.period_s),
+        amplitude: figure(&|group| group.speed.norm()),
+        response: figure(&|group| group.speed.norm() / group.duty.norm()),
+        lag_deg: figure(&|group| -(group.speed / group.duty).arg().to_degrees()),
+        static_gain,
+    };
+    let is_steady = run.period_s.1 < MOST_SPREAD * run.period_s.0;
+    let is_clear = run.amplitude.0 > LEAST_AMPLITUDE * hysteresis;
+    if !is_steady || !is_clear {
+        return Err(Cause::NoLimitCycle);
+    }
+    if run.static_gain.0 <= run.response.0 || run.static_gain.1 > WIDEST_GAIN * run.static_gain.0 {
+        return Err(Cause::StepUnclear);
+    }
+    Ok(run)
+}
+
+/// Standard deviation of the speed between polls at the duty in force.
+fn speed_noise<L: Law>(guard: &mut ExperimentGuard<'_, L>, polls: usize) -> Result<f64, Cause> {
+    let mut speeds = Vec::new();
+    while speeds.len() < NOISE_POLLS {
+        guard.poll(false)?;
+        speeds.extend(guard.recent_speed(polls));
+    }
+    let (mean, _) = mean_and_doubt(&speeds);
+    let square = speeds.iter().map(|speed| (speed - mean).powi(2)).sum::<f64>() / speeds.len() as f64;
+    // A count more or less, where the encoder is so coarse that none was seen.
+    Ok(square.sqrt().max(0.3 / (polls as f64 * guard.options.poll_s)))
+}
+
+/// Switches until there are enough cycles; gives when it switched up.
+fn switch<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
+    polls: usize,
+    duties: (f64, f64),
+    (set_speed, hysteresis): (f64, f64),
+) -> Result<Vec<f64>, Cause> {
+    let mut ups = Vec::new();
+    let begin_s = guard.now_s();
+    let mut is_up = true;
+    guard.duty(duties.1)?;
+    while ups.len() <= FIRST_CYCLES + GROUP * GROUPS {
+        if guard.now_s() - begin_s > LONGEST_S {
+            return Err(Cause::NoLimitCycle);
+        }
+        if guard.poll(false)?.is_none() {
+            continue;
+        }
+        let Some(speed) = guard.recent_speed(polls) else { continue };
+        let crosses = if is_up { speed > set_speed + hysteresis } else { speed < set_speed - hysteresis };
+        if crosses {
+            is_up = !is_up;
+            guard.duty(if is_up { duties.1 } else { duties.0 })?;
+            if is_up {
+                ups.extend(guard.drives.last().map(|drive| drive.t));
+            }
+        }
+    }
+    Ok(ups)
+}
+
+/// A few cycles together.
+struct Group {
+    period_s: f64,
+    mean_speed: f64,
+    mean_duty: f64,
+    /// The first harmonics.
+    speed: Complex<f64>,
+    duty: Complex<f64>,
+}
+
+impl Group {
+    /// From the counts and duties between two times, which are whole cycles.
+    fn of<L: Law>(guard: &ExperimentGuard<'_, L>, (from_s, to_s): (f64, f64), ups: &[f64]) -> Option<Self> {
+        let cycles = (ups.len() - 1) as f64;
+        let (span_s, omega) = (to_s - from_s, TAU * cycles / (to_s - from_s));
+        let points: Vec<&Point> = guard.points.iter().filter(|p| p.t >= from_s && p.t <= to_s).collect();
+        let (slope, place) = harmonic_of(&points, from_s, omega)?;
+        let duties: Vec<(f64, f64)> = guard
+            .drives
+            .iter()
+            .filter(|drive| drive.t >= from_s - 1e-9)
+            .filter_map(|drive| match drive.input {
+                Input::Duty(duty) => Some((drive.t, duty)),
+                Input::Speed(_) | Input::Position(..) => None,
+            })
+            .collect();
+        let (mut mean_duty, mut harmonic) = (0.0, Complex::new(0.0, 0.0));
+        for (n, (at_s, duty)) in duties.iter().enumerate() {
+            let until_s = duties.get(n + 1).map_or(to_s, |next| next.0).min(to_s);
+            let (a, b) = (at_s - from_s, until_s - from_s);
+            if b <= a {
+                continue;
+            }
+            mean_duty += duty * (b - a) / span_s;
+            // 2/T times the integral of u exp(-jwt).
+            let wave = |t: f64| Complex::new(0.0, -omega * t).exp();
+            harmonic += (wave(b) - wave(a)) / Complex::new(0.0, -omega) * (2.0 * duty / span_s);
+        }
+        Some(Self {
+            period_s: span_s / cycles,
+            mean_speed: slope,
+            mean_duty,
+            speed: place * Complex::new(0.0, omega),
+            duty: harmonic,
+        })
+    }
+}
+
+/// The slope of counts, and the first harmonic of what is beside it, by least squares with the next two harmonics beside. `None` with too few.
+fn harmonic_of(points: &[&Point], from_s: f64, omega: f64) -> Option<(f64, Complex<f64>)> {
+    const TERMS: usize = 8;
+    if points.len() < TERMS + 4 {
+        return None;
+    }
+    let first = points.first()?.counts;
+    let row = |t: f64| {
+        let mut row = vec![1.0, t];
+        for n in 1..=3 {
+            let at = f64::from(n) * omega * t;
+            row.extend([at.cos(), at.sin()]);
+        }
+        row
+    };
+    let rows: Vec<f64> = points.iter().flat_map(|point| row(point.t - from_s)).collect();
+    let matrix = DMatrix::from_row_slice(points.len(), TERMS, &rows);
+    let right = DVector::from_iterator(points.len(), points.iter().map(|point| point.counts - first));
+    let square = matrix.transpose() * &matrix;
+    let found = square.lu().solve(&(matrix.transpose() * right))?;
+    // c cos + s sin is the real part of (c - js) exp(jwt).
+    Some((found[1], Complex::new(found[2], -found[3])))
+}
+
+/// A mean, and half of the 95 % interval of it.
+fn mean_and_doubt(values: &[f64]) -> Figure {
+    let count = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let square = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
+    (mean, STUDENT * (square / count).sqrt())
+}
