@@ -311,6 +311,8 @@ impl<'a, L: Law> ExperimentGuard<'a, L> {
             };
             if is_late && self.tries < self.options.late_tries {
                 self.tries += 1;
+                // What is concluded after that is held against it too: the motor may have been left in another state than a run leaves it in.
+                self.kept_late = self.kept_late.or(late).or(self.pace.longest());
                 report.clone_from(&before);
                 self.begin_again(anew, &monitor)?;
                 continue;

@@ -67,6 +67,11 @@ impl Pace {
         self.last_s = None;
     }
 
+    /// The longest gap.
+    pub(crate) fn longest(&self) -> Option<Late> {
+        self.longest
+    }
+
     /// The longest gap, where it was a late one.
     pub(crate) fn late_gap(&self) -> Option<Late> {
         let limit_s = LATE_S.max(LATE_RATIO * quantile(&self.gaps_s, 0.5).unwrap_or_default());

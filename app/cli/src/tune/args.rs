@@ -69,7 +69,8 @@ pub struct PositionArgs {
     /// Form of the loop; it is identified by fit (step and relay are for the velocity loop).
     #[arg(long, value_enum, default_value_t = MethodArg::Piv)]
     pub method: MethodArg,
-    /// The axis has no end stops: it is driven at up to full duty both ways, and its position limits stay as they are.
+    /// The axis has no end stops: it is driven at up to full duty both ways. Position limits of 0 to 0, within which it could not move, become
+    /// +-2 billion.
     #[arg(long, conflicts_with = "travel")]
     pub turns_freely: bool,
     /// The rest.

@@ -120,6 +120,9 @@ fn from_an_empty_start_to_a_tuned_and_saved_axis_by_mouse_alone() {
         hand.click(go);
         hand.click("Arm");
         hand.bench.pass_ms(500);
+        if step == Step::Position {
+            hand.click("Turns freely");
+        }
         hand.click("Tune M1");
         hand.wait_for_run();
         hand.click("Apply (RAM)");

@@ -3,7 +3,7 @@
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::law::Law;
 use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::tune::{Method, tune};
+use brushwork_tuning::tune::{Method, Request, tune};
 use brushwork_tuning_bench::mcp::population::specimen;
 use brushwork_tuning_bench::motion_mind::population::specimen as mind_specimen;
 use brushwork_tuning_bench::run::request_of;
@@ -53,6 +53,38 @@ fn assert_blames_no_machine<L: Law>(report: &Report<L>, case: &str) -> bool {
     true
 }
 
+/// Without another try, which would hide what the first one concludes.
+fn once<L: Law>(mut request: Request<L>) -> Request<L> {
+    request.guard.late_tries = 0;
+    request
+}
+
+/// Runs that did a stretch again end with gains but for a few, and none of them names the machine.
+fn assert_done_again<L: Law>(reports: impl Iterator<Item = (Report<L>, String)>) {
+    let refused = reports.filter(|(report, case)| assert_blames_no_machine(report, case)).count();
+    assert!(20 * refused <= RUNS as usize, "{refused} of {RUNS}");
+}
+
+#[test]
+fn a_stretch_that_came_late_is_done_again_by_itself_and_gives_gains() {
+    assert_done_again((0..RUNS).map(|seed| {
+        let plant = specimen(31, seed as usize % PLANTS);
+        let method = [Method::Velocity, Method::Pd, Method::Piv][seed as usize % 3];
+        let mut axis = Unit::axis(&plant);
+        axis.carrier.stalls = stalls(&mut ChaCha8Rng::seed_from_u64(seed), Duration::from_millis(500));
+        let report = tune(&mut axis, &request_of(&plant, method));
+        assert!(report.replay().as_ref() == Some(&report), "seed {seed}: the replay differs");
+        (report, format!("seed {seed}, {method:?}"))
+    }));
+    assert_done_again((0..RUNS).map(|seed| {
+        let plant = mind_specimen(7, seed as usize % PLANTS);
+        let method = [Method::Velocity, Method::Pd, Method::Pid][seed as usize % 3];
+        let mut axis = Unit::axis(&plant);
+        axis.carrier.line.stalls = stalls(&mut ChaCha8Rng::seed_from_u64(seed), Duration::from_millis(500));
+        (tune(&mut axis, &request_of(&plant, method)), format!("Motion Mind, seed {seed}, {method:?}"))
+    }));
+}
+
 #[test]
 fn no_refusal_of_a_late_host_names_the_machine() {
     let mut refused = 0;
@@ -63,7 +95,7 @@ fn no_refusal_of_a_late_host_names_the_machine() {
         let mut draw = ChaCha8Rng::seed_from_u64(seed);
         axis.carrier.stalls = stalls(&mut draw, Duration::from_millis(500));
         let case = format!("seed {seed}, {method:?}, stalls {:?}", axis.carrier.stalls);
-        let report = tune(&mut axis, &request_of(&plant, method));
+        let report = tune(&mut axis, &once(request_of(&plant, method)));
         refused += usize::from(assert_blames_no_machine(&report, &case));
         assert!(report.replay().as_ref() == Some(&report), "{case}: the replay differs");
     }
@@ -83,7 +115,7 @@ fn no_refusal_of_a_crowded_host_names_the_machine() {
         let mut axis = Unit::axis(&plant);
         axis.carrier.late_reads = Some(CROWDED);
         let case = format!("seed {seed}, {method:?}");
-        let report = tune(&mut axis, &request_of(&plant, method));
+        let report = tune(&mut axis, &once(request_of(&plant, method)));
         refused += usize::from(assert_blames_no_machine(&report, &case));
     }
     println!("{refused} of {RUNS} were refused");
@@ -100,7 +132,7 @@ fn no_refusal_of_a_late_host_names_the_machine_of_a_motion_mind() {
         let mut draw = ChaCha8Rng::seed_from_u64(seed);
         axis.carrier.line.stalls = stalls(&mut draw, Duration::from_millis(500));
         let case = format!("seed {seed}, {method:?}, stalls {:?}", axis.carrier.line.stalls);
-        let report = tune(&mut axis, &request_of(&plant, method));
+        let report = tune(&mut axis, &once(request_of(&plant, method)));
         refused += usize::from(assert_blames_no_machine(&report, &case));
         assert!(report.replay().as_ref() == Some(&report), "{case}: the replay differs");
     }
