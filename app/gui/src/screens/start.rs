@@ -186,7 +186,7 @@ fn files_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         }
     });
     ui.weak(
-        "A profile, backup, recording, tuning report, script or firmware image: it shows by itself which.",
+        "A profile, backup, recording, tuning report, script or firmware image; its content tells which it is.",
     );
     if let Some(text) = model.front.graph.files.loading_text() {
         ui.weak(text);
