@@ -26,6 +26,11 @@ macro_rules! causes {
                 /// When in the run it ended, ms.
                 at_ms: u32,
             },
+            /// A reading takes so long that a motor could not be switched off in time after a lost one.
+            LineTooSlow {
+                /// The shortest time from one reading to the next, ms.
+                reading_ms: u32,
+            },
         }
 
         impl Cause {
@@ -36,6 +41,7 @@ macro_rules! causes {
                     $(Self::$cause => $sentence.into(),)*
                     Self::AnsweredLate { longest_gap_ms, at_ms } => answered_late(longest_gap_ms, at_ms).into(),
                     Self::TakenLate { longest_gap_ms, at_ms } => taken_late(longest_gap_ms, at_ms).into(),
+                    Self::LineTooSlow { reading_ms } => line_too_slow(reading_ms).into(),
                 }
             }
         }
@@ -226,6 +232,13 @@ impl Cause {
 /// When in a run something was.
 fn at(at_ms: u32) -> String {
     format!("at {:.1} s of the run", 1e-3 * f64::from(at_ms))
+}
+
+fn line_too_slow(reading_ms: u32) -> String {
+    format!(
+        "This line takes {reading_ms} ms from one reading to the next, so a motor could not be switched off within 250 ms of the last good one when \
+         replies are lost. Use a cable, a higher baud rate, or a line with less latency."
+    )
 }
 
 /// That it is the computer is shown by trying again with less to do; what stays then is the line's.

@@ -5,7 +5,7 @@
 //! encoder is right; the encoder is dead since then; it counts the other way since then) is held against the currents.
 
 use crate::cause::Cause;
-use crate::motor_monitor::{MotorMonitor, NO_CURRENT_AMPS};
+use crate::motor_monitor::MotorMonitor;
 use crate::poll::Point;
 
 /// How long the motor is watched with its duty taken away, s.
@@ -88,7 +88,10 @@ pub(crate) fn why_unmoved(monitor: &MotorMonitor, backwards: bool) -> Cause {
         .filter_map(|point| Some((monitor.duty_at(point.t).abs(), point.amps?.abs())))
         .filter(|(duty, _)| *duty > monitor.start_duty)
         .collect();
-    if monitor.draws() && !pushed.is_empty() && pushed.iter().all(|(_, amps)| *amps <= NO_CURRENT_AMPS) {
+    if monitor.draws()
+        && !pushed.is_empty()
+        && pushed.iter().all(|(_, amps)| *amps <= monitor.no_current_amps())
+    {
         return Cause::MotorOpened;
     }
     if backwards {
@@ -108,7 +111,7 @@ fn middle(mut values: Vec<f64>) -> Option<f64> {
 
 /// Whether no current flows: not at the duty that was given at last, nor while the motor is braked.
 fn is_open(monitor: &MotorMonitor, polls: &[Point], alarm_s: f64) -> bool {
-    let none = |amps: f64| amps.abs() <= NO_CURRENT_AMPS;
+    let none = |amps: f64| amps.abs() <= monitor.no_current_amps();
     let least_duty = monitor.start_duty.max(DRIVEN_DUTY);
     let driven = |point: &&Point| point.t < alarm_s && monitor.duty_at(point.t).abs() > least_duty;
     let before = polls.iter().rev().filter(driven).find_map(|point| point.amps);
@@ -177,7 +180,7 @@ fn turns_unseen(monitor: &MotorMonitor, moments: &[Moment], alarm_s: f64) -> boo
     let first = braked.iter().take(2).sum::<f64>() / braked.len().clamp(1, 2) as f64;
     // What rings on a spring comes by nought again and again.
     let least = braked.into_iter().reduce(f64::min).unwrap_or(0.0);
-    driven_off || first > 0.08 || least > (2.0 * NO_CURRENT_AMPS / stall).max(0.02)
+    driven_off || first > 0.08 || least > (2.0 * monitor.no_current_amps() / stall).max(0.02)
 }
 
 /// What may have happened, held against the currents.

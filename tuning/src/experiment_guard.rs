@@ -49,6 +49,10 @@ const LINK_LOST_S: f64 = 0.15;
 const LINK_LOST_POLLS: u32 = 5;
 /// How often stretches of a run are done again: on a computer with six busy programs beside it one in ten is late.
 const LATE_TRIES: u32 = 4;
+/// How long after the last good reading a driven motor is off at the latest, s (SAFETY.md: a motion command lives 250 ms).
+const OFF_WITHIN_S: f64 = 0.25;
+/// The longest time between two readings with which that can be kept: one reading, one that is waited for in vain, and the command.
+const SLOWEST_READING_S: f64 = 0.1;
 /// Readings of the current that are looked at before a fault is named by it, and how far above the highest one at rest they must be:
 /// noise that reached 1 among the dozen readings at rest does not have its middle at 3.
 const DRIVEN_READINGS: usize = 6;
@@ -519,10 +523,12 @@ impl<'a, L: Law> ExperimentGuard<'a, L> {
                 let since_s = *self.silent_since_s.get_or_insert(now_s);
                 self.silent_polls += 1;
                 let silent_s = self.now_s() - since_s;
-                if silent_s > LINK_LOST_S && self.silent_polls >= LINK_LOST_POLLS {
+                let is_lost = silent_s > LINK_LOST_S && self.silent_polls >= LINK_LOST_POLLS;
+                if is_lost || self.cannot_wait(now_s) {
                     let late = self
                         .answered_late(Late { longest_s: silent_s, at_s: self.epoch_s + since_s + silent_s });
-                    return Err(if self.pace.is_coming_late() { late } else { Cause::LinkLost });
+                    // One long silence may be the computer's as well as the line's.
+                    return Err(if self.pace.is_coming_late() || !is_lost { late } else { Cause::LinkLost });
                 }
                 return self.check_unseen().map(|()| None);
             }
@@ -566,6 +572,30 @@ impl<'a, L: Law> ExperimentGuard<'a, L> {
             Err(guess) => Err(self.name_fault(guess)),
             Ok(()) => Ok(Some(point)),
         }
+    }
+
+    /// Refuses a line on which a motor could not be switched off in time after lost replies: the quickest of the readings so far, of a motor that has not
+    /// been driven, shows what it takes by itself.
+    pub(crate) fn refuse_slow_line(&self) -> Result<(), Cause> {
+        let gaps = self.points.windows(2).map(|pair| pair[1].t - pair[0].t);
+        let quickest_s = gaps.fold(f64::INFINITY, f64::min);
+        if self.setup.stream_timeout_ms.is_some() && quickest_s.is_finite() && quickest_s > SLOWEST_READING_S
+        {
+            return Err(Cause::LineTooSlow { reading_ms: (1e3 * quickest_s).round() as u32 });
+        }
+        Ok(())
+    }
+
+    /// Whether another silent poll as long as the one that began at `began_s` would leave a driven motor driven for too long after the last good reading. The
+    /// controller's own time-out does not help: where only replies are lost, these polls feed it.
+    fn cannot_wait(&mut self, began_s: f64) -> bool {
+        let is_driven = self.drives.last().is_some_and(|last| last.input != Input::Duty(0.0));
+        let Some(last_s) = self.points.last().map(|point| point.t) else { return false };
+        let now_s = self.now_s();
+        let next_s = now_s - began_s + self.options.poll_s + self.usual_exchange_s().unwrap_or(0.0);
+        // Between experiments nobody asks for a while, which is no silence.
+        let silent_s = now_s - last_s.max(began_s - 2.0 * self.options.poll_s);
+        self.setup.stream_timeout_ms.is_some() && is_driven && silent_s + next_s > OFF_WITHIN_S
     }
 
     /// Whether an exchange took hardly longer than its predecessors: when the counts of a longer one were read is open, which would

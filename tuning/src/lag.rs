@@ -1,32 +1,91 @@
 //! The lag that hides in the firmware's loop, measured on the closed loop.
 //!
 //! Polls at 50 to 100 Hz cannot see a few milliseconds in the counts of an open loop. In a closed one the duty is the
-//! controller's own answer to the speed as it sees it: the candidate loop is simulated with each lag of a grid, and the
-//! lags under which simulated counts and duties agree with the polled ones are the likely ones.
+//! controller's own answer to the speed as it sees it: the loop of the gains that are tried is simulated, and filter, delay and winding are fitted to
+//! the polled counts and duties (an output-error fit, as in Ljung, "System Identification", 2nd edition, section 7.3).
+//!
+//! What is called the lag is everything that the loop loses between the motion and the torque, beyond the hold and the count difference of a tick: the
+//! mean delay of the filter on the speed, the ticks by which the duty comes late, and the time constant of the winding (inductance over resistance).
+//!
+//! The firmware's ticks fall anywhere between polls. Simulated is what the loop does on average over all phases of its tick: a setpoint comes into force
+//! over the length of one tick, and a register is half a tick old when it is read.
 
 use crate::experiment_guard::{ExperimentGuard, Input};
 use crate::law::Law;
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::model::{Gains, Lag, PlantModel};
 use crate::ticks::{Setpoint, TickLoop};
+use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
+use nalgebra::storage::Owned;
+use nalgebra::{DMatrix, DVector, Dyn, U6, Vector6};
 use serde::{Deserialize, Serialize};
 
-/// Time constants tried, in prior standard deviations of their logarithm, and the bounds of that deviation.
-const TAU_STEPS: [f64; 9] = [-2.4, -1.8, -1.2, -0.6, 0.0, 0.6, 1.2, 1.8, 2.4];
-const TAU_PRIOR: (f64, f64) = (0.02, 0.6);
-/// Offsets of commands against stamps tried, s, and their prior.
-const OFFSETS_S: [f64; 4] = [-0.0015, 0.0, 0.0015, 0.003];
-const OFFSET_PRIOR_S: (f64, f64) = (0.0, 0.0015);
-/// How much of the delay may lie in the winding, ticks: the duty is read before it, the counts behind it.
-const WINDINGS_TICKS: [f64; 3] = [0.0, 0.5, 1.0];
-/// What the model is trusted to, as duty and as a share of the step's counts per poll.
-const MODEL_DUTY: f64 = 0.006;
-/// Standard deviation of a time stamp, s.
-const STAMP_S: f64 = 0.0012;
+/// What the fit takes for granted. Chosen on 96 motors of another make (seeds 501 and 502 of `device/mcp/axis/tests/other_make`), where they give a lag within
+/// 0.6 ms in the median.
+struct LagPriors {
+    /// Standard deviation of the logarithm of the time constant, over that of the open-loop fit, and its bounds.
+    tau: (f64, f64, f64),
+    /// Standard deviation of the logarithm of the gain: the open-loop fit knows it well.
+    gain: f64,
+    /// Standard deviation of the time from a command's stamp to its effect, beyond the wait for a tick, s: half the asymmetry of a line of 2 ms.
+    offset_s: f64,
+    /// Time constant of a winding and its standard deviation, s: 0.2 to 3 ms in brushed motors.
+    winding_s: (f64, f64),
+    /// From which sum of filter and delay on a lag is unlikely, and how softly, s.
+    long_s: (f64, f64),
+    /// Standard deviation of a time stamp, s.
+    stamp_s: f64,
+    /// Speed by which the model drifts off, over the speed and the root of a second.
+    drift: f64,
+    /// What the model of a quiet duty is trusted to.
+    duty: f64,
+    /// Standard deviation of the logarithm of the duty's noise against what rounding makes of it under a lag: a filter lets through much less than a delay.
+    /// Uneven edges of an encoder and speeds of whole counts a tick make it half or twice as loud.
+    rounding: f64,
+    /// Share of what the duty changes by in a tick that it may be off by: the phase of the tick, 1 / sqrt(12).
+    flank: f64,
+}
+
+const PRIORS: LagPriors = LagPriors {
+    tau: (1.5, 0.03, 0.6),
+    gain: 0.01,
+    offset_s: 0.001,
+    winding_s: (0.001, 0.001),
+    long_s: (0.012, 0.008),
+    stamp_s: 0.0006,
+    drift: 0.003,
+    duty: 0.004,
+    rounding: 0.5,
+    flank: 0.3,
+};
+
+/// How wide the interval is. Measured: with these 90 to 99 % of the intervals hold the lag (MEASURED.md, "Intervals").
+struct LagWidths {
+    /// Standard deviations on either side.
+    deviations: f64,
+    /// What no record tells, as standard deviation: a part that does not change, s, and one that goes with the tick (whether a sum is used before or after
+    /// the present error is added, how a filter is discretised).
+    unmodelled: (f64, f64),
+    /// Noise of the duty at which the standard deviation doubles: a loop that the rounding of counts drives into its limits is no longer linear.
+    loud_duty: f64,
+    /// What another minimum may cost more and still count, in units of the misfit.
+    likely: f64,
+}
+
+const WIDTHS: LagWidths =
+    LagWidths { deviations: 2.0, unmodelled: (0.0004, 0.15), loud_duty: 0.25, likely: 4.0 };
+
+/// Where the fit starts: filter, s, and delay, ticks.
+const STARTS: [(f64, f64); 4] = [(0.001, 0.2), (0.006, 0.2), (0.001, 1.2), (0.010, 1.0)];
+/// Units of the parameters, and the steps by which slopes are taken, in those.
+const UNITS: [f64; 6] = [1e-3, 1e-3, 1e-3, 0.05, 1e-3, 0.01];
+const SLOPE_STEP: f64 = 0.02;
+/// How hard it is held within its bounds, units of a parameter per standard deviation.
+const BOUND: f64 = 0.1;
 /// An exchange that took this much longer than the shortest says too little about when its counts were read, s.
 const LATE_S: f64 = 0.004;
-/// Residuals beyond this many standard deviations say no more.
-const SOFT_SQUARE: f64 = 25.0;
+/// Standard deviations from which on a residual counts less and less.
+const KNEE: f64 = 3.0;
 
 /// The closed-loop record.
 #[derive(Clone, Debug, Default)]
@@ -84,64 +143,234 @@ pub struct LagFit {
     pub chi_square: f64,
 }
 
-struct Case {
-    lag: Lag,
-    tau_scale: f64,
-    /// What is compared: misfit, and how much of it was to be expected.
-    cost: f64,
-    misfit: f64,
+/// Some seconds of a loop under known gains.
+#[derive(Clone, Debug)]
+pub struct Stretch {
+    /// What was polled.
+    pub record: ClosedLoopRecord,
+    /// The gains that were in force.
+    pub gains: Gains,
+    /// The speed that it was at when the record begins; `None` where it stood and had no setpoint yet.
+    pub before: Option<f64>,
 }
 
 /// Fits the lag. `sd_ln_tau` is how loosely the time constant is known.
 #[must_use]
 pub fn fit_lag<L: Law>(
-    record: &ClosedLoopRecord,
+    stretches: &[Stretch],
     plant: &PlantModel,
     law: &L,
-    gains: &Gains,
     qpps: f64,
     sd_ln_tau: f64,
 ) -> Option<LagFit> {
-    if record.setpoints.len() < 3 || record.duties.len() < 20 {
+    let steps: usize = stretches.iter().map(|stretch| stretch.record.setpoints.len()).sum();
+    let duties: usize = stretches.iter().map(|stretch| stretch.record.duties.len()).sum();
+    if steps < 3 || duties < 20 {
         return None;
     }
-    let spread = (1.5 * sd_ln_tau).clamp(TAU_PRIOR.0, TAU_PRIOR.1);
-    let mut cases: Vec<Case> = Vec::new();
-    for &filter_s in law.facts().filters_s {
-        for &delay_ticks in law.facts().delays_ticks {
-            let lag = Lag { filter_s, delay_ticks };
-            // A lag that lets more of the rounding through explains a rougher duty.
-            let linear = LoopPlant::new(DiscretePlant::of(plant, law.tick_s()), law, lag);
-            let sigma_duty = linear.margins(gains, qpps).noise_duty.hypot(MODEL_DUTY);
-            let spread_cost = 2.0 * record.duties.len() as f64 * (sigma_duty / MODEL_DUTY).ln();
-            for step in TAU_STEPS {
-                let tau_scale = (step * spread).exp();
-                let model = PlantModel { tau_s: plant.tau_s * tau_scale, ..*plant };
-                for offset_s in OFFSETS_S {
-                    let twin = TickLoop::new(model, *law, lag, *gains, qpps).smooth();
-                    let mut cost = step.powi(2) + ((offset_s - OFFSET_PRIOR_S.0) / OFFSET_PRIOR_S.1).powi(2);
-                    cost += mismatch(record, twin, law, offset_s, sigma_duty);
-                    cases.push(Case { lag, tau_scale, cost: cost + spread_cost, misfit: cost });
-                }
-            }
+    let tick_s = law.tick_s();
+    let known = Known::new(stretches, plant, law, qpps, sd_ln_tau);
+    let mut found: Vec<(f64, Vector6<f64>, Problem<'_, L>)> = Vec::new();
+    for (filter_s, delay_ticks) in STARTS {
+        let start = known.inside(filter_s, delay_ticks * tick_s);
+        let problem = Problem { known: &known, q: start };
+        let (problem, report) = LevenbergMarquardt::new().with_patience(4).minimize(problem);
+        if report.objective_function.is_finite() {
+            found.push((2.0 * report.objective_function, problem.q, problem));
         }
     }
-    let best = cases.iter().min_by(|a, b| a.cost.total_cmp(&b.cost))?;
-    let readings = (record.counts.len() + record.duties.len()) as f64;
-    let chi_square = best.misfit / readings;
-    // What the model explains badly it also locates badly.
-    let likely = best.cost + 4.0 * chi_square.max(1.0).powi(2);
-    let total = |case: &&Case| case.lag.total_s(law.tick_s());
-    let within = || cases.iter().filter(|case| case.cost < likely);
-    let shortest = within().map(|c| total(&c)).fold(f64::INFINITY, f64::min);
-    let worst = within().max_by(|a, b| total(a).total_cmp(&total(b)))?;
-    Some(LagFit {
-        lag: best.lag,
-        worst: worst.lag,
-        interval_s: (shortest, worst.lag.total_s(law.tick_s())),
-        tau_scale: best.tau_scale,
-        chi_square,
-    })
+    let best = found.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let readings = best.2.known.readings.max(1) as f64;
+    let chi_square = best.0 / readings;
+    let scale = chi_square.max(1.0);
+    let loud = 1.0 + (known.loudest() / WIDTHS.loud_duty).powi(2);
+    let floor_s = WIDTHS.unmodelled.0.hypot(WIDTHS.unmodelled.1 * tick_s);
+    let (mut shortest, mut longest) = (f64::INFINITY, 0.0_f64);
+    for (_, q, problem) in found.iter().filter(|other| other.0 <= best.0 + WIDTHS.likely * scale) {
+        let total = known.parts(q).iter().sum::<f64>();
+        let sd = loud * (problem.deviation() * scale.sqrt()).hypot(floor_s);
+        shortest = shortest.min(total - WIDTHS.deviations * sd);
+        longest = longest.max(total + WIDTHS.deviations * sd);
+    }
+    let [filter_s, delay_s, winding_s] = known.parts(&best.1);
+    let lag = Lag { filter_s, delay_ticks: (delay_s + winding_s) / tick_s };
+    let total_s = lag.total_s(tick_s);
+    let worst = Lag { delay_ticks: lag.delay_ticks + (longest - total_s).max(0.0) / tick_s, ..lag };
+    let tau_scale = (best.1[3] * UNITS[3]).exp();
+    Some(LagFit { lag, worst, interval_s: (shortest.max(0.0), longest), tau_scale, chi_square })
+}
+
+/// What the fit goes by.
+struct Known<'a, L: Law> {
+    stretches: &'a [Stretch],
+    /// Noise of the duty of each.
+    noises: Vec<f64>,
+    plant: PlantModel,
+    law: L,
+    qpps: f64,
+    sd_ln_tau: f64,
+    readings: usize,
+}
+
+impl<'a, L: Law> Known<'a, L> {
+    fn new(stretches: &'a [Stretch], plant: &PlantModel, law: &L, qpps: f64, sd_ln_tau: f64) -> Self {
+        let (factor, least, most) = PRIORS.tau;
+        let readings = |record: &ClosedLoopRecord| {
+            let from_s = record.judged_from_s();
+            let counts = record.counts.iter().filter(|count| count.0 >= from_s).count();
+            counts.saturating_sub(1) + record.duties.iter().filter(|duty| duty.0 > from_s).count()
+        };
+        Self {
+            stretches,
+            noises: stretches.iter().map(|stretch| noise(&stretch.record).hypot(PRIORS.duty)).collect(),
+            plant: *plant,
+            law: *law,
+            qpps,
+            sd_ln_tau: (factor * sd_ln_tau).clamp(least, most),
+            readings: stretches.iter().map(|stretch| readings(&stretch.record)).sum(),
+        }
+    }
+
+    /// The loudest duty.
+    fn loudest(&self) -> f64 {
+        self.noises.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// The longest filter and delay that the law may have, s.
+    fn longest(&self) -> [f64; 2] {
+        let facts = self.law.facts();
+        let most = |all: &[f64]| all.iter().copied().fold(0.0, f64::max);
+        [most(facts.filters_s), most(facts.delays_ticks) * self.law.tick_s()]
+    }
+
+    /// Start values within the bounds.
+    fn inside(&self, filter_s: f64, delay_s: f64) -> Vector6<f64> {
+        let [longest_filter, longest_delay] = self.longest();
+        let times = [filter_s.min(longest_filter), delay_s.min(longest_delay), PRIORS.winding_s.0];
+        Vector6::from_fn(|n, _| times.get(n).map_or(0.0, |time_s| time_s / UNITS[n]))
+    }
+
+    /// Filter, delay and winding that parameters stand for, s.
+    fn parts(&self, q: &Vector6<f64>) -> [f64; 3] {
+        let [longest_filter, longest_delay] = self.longest();
+        let most = [longest_filter, longest_delay, f64::INFINITY];
+        std::array::from_fn(|n| (q[n] * UNITS[n]).clamp(0.0, most[n]))
+    }
+
+    fn residuals(&self, q: &Vector6<f64>) -> DVector<f64> {
+        let [filter_s, delay_s, winding_s] = self.parts(q);
+        let tick_s = self.law.tick_s();
+        let lag = Lag { filter_s, delay_ticks: delay_s / tick_s };
+        let model = PlantModel {
+            tau_s: self.plant.tau_s * (q[3] * UNITS[3]).clamp(-2.0, 2.0).exp(),
+            gain_counts_per_s: self.plant.gain_counts_per_s * (q[5] * UNITS[5]).clamp(-0.5, 0.5).exp(),
+            ..self.plant
+        };
+        let offset_s = q[4] * UNITS[4];
+        let mut all = Vec::with_capacity(self.readings + 12);
+        for (stretch, noise) in self.stretches.iter().zip(&self.noises) {
+            let mut twin = TickLoop::new(model, self.law, lag, stretch.gains, self.qpps).smooth();
+            twin.winding_s = winding_s;
+            if let Some(speed) = stretch.before {
+                twin.start_steady(speed);
+            }
+            misfits(&stretch.record, twin, &self.law, offset_s, stretch.before, *noise, &mut all);
+            let whole = Lag { delay_ticks: (delay_s + winding_s) / tick_s, ..lag };
+            let predicted = LoopPlant::new(DiscretePlant::of(&model, tick_s), &self.law, whole)
+                .margins(&stretch.gains, self.qpps)
+                .noise_duty;
+            all.push(soft((noise / predicted.hypot(PRIORS.duty)).ln() / PRIORS.rounding));
+        }
+        all.push(q[3] * UNITS[3] / self.sd_ln_tau);
+        all.push(offset_s / PRIORS.offset_s);
+        all.push(q[5] * UNITS[5] / PRIORS.gain);
+        all.push((winding_s - PRIORS.winding_s.0) / PRIORS.winding_s.1);
+        all.push((filter_s + delay_s - PRIORS.long_s.0).max(0.0) / PRIORS.long_s.1);
+        for (n, part) in [filter_s, delay_s, winding_s].into_iter().enumerate() {
+            all.push((q[n] - part / UNITS[n]) / BOUND);
+        }
+        DVector::from_vec(all)
+    }
+}
+
+struct Problem<'a, L: Law> {
+    known: &'a Known<'a, L>,
+    q: Vector6<f64>,
+}
+
+impl<L: Law> Problem<'_, L> {
+    fn slopes(&self) -> DMatrix<f64> {
+        let here = self.known.residuals(&self.q);
+        let columns: Vec<DVector<f64>> = (0..UNITS.len())
+            .map(|n| {
+                let mut up = self.q;
+                up[n] += SLOPE_STEP;
+                (self.known.residuals(&up) - &here) / SLOPE_STEP
+            })
+            .collect();
+        DMatrix::from_columns(&columns)
+    }
+
+    /// Standard deviation of the whole lag, s. A part that stands at its bound is held there by the others' uncertainty, not by its own.
+    fn deviation(&self) -> f64 {
+        let slopes = self.slopes();
+        let information = slopes.tr_mul(&slopes) + DMatrix::identity(UNITS.len(), UNITS.len()) * 1e-9;
+        let Some(covariance) = information.try_inverse() else { return f64::INFINITY };
+        let parts = DVector::from_fn(UNITS.len(), |n, _| if n < 3 { UNITS[n] } else { 0.0 });
+        (parts.transpose() * covariance * &parts)[0].max(0.0).sqrt()
+    }
+}
+
+impl<L: Law> LeastSquaresProblem<f64, Dyn, U6> for Problem<'_, L> {
+    type ResidualStorage = Owned<f64, Dyn>;
+    type JacobianStorage = Owned<f64, Dyn, U6>;
+    type ParameterStorage = Owned<f64, U6>;
+
+    fn set_params(&mut self, q: &Vector6<f64>) {
+        self.q.copy_from(q);
+    }
+
+    fn params(&self) -> Vector6<f64> {
+        self.q
+    }
+
+    fn residuals(&self) -> Option<DVector<f64>> {
+        Some(self.known.residuals(&self.q))
+    }
+
+    fn jacobian(&self) -> Option<nalgebra::OMatrix<f64, Dyn, U6>> {
+        let slopes = self.slopes();
+        Some(nalgebra::OMatrix::<f64, Dyn, U6>::from_fn(slopes.nrows(), |r, c| slopes[(r, c)]))
+    }
+}
+
+/// Deviation of the duty about its trend in the second halves of the plateaus: the median of those that have five readings.
+fn noise(record: &ClosedLoopRecord) -> f64 {
+    let end = record.duties.last().map_or(0.0, |last| last.0);
+    let ends = record.setpoints.iter().skip(1).map(|setpoint| setpoint.0).chain([end]);
+    let mut squares: Vec<f64> = record
+        .setpoints
+        .iter()
+        .zip(ends)
+        .filter_map(|(from, to)| {
+            let half = 0.5 * (from.0 + to);
+            let inside: Vec<(f64, f64)> =
+                record.duties.iter().copied().filter(|duty| duty.0 > half && duty.0 < to).collect();
+            (inside.len() >= 5).then(|| about_line(&inside))
+        })
+        .collect();
+    squares.sort_by(f64::total_cmp);
+    squares.get(squares.len() / 2).map_or(0.02, |square| square.sqrt())
+}
+
+/// Variance about the straight line that fits best.
+fn about_line(points: &[(f64, f64)]) -> f64 {
+    let n = points.len() as f64;
+    let mean = |of: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / n;
+    let (t, y) = (mean(&|p| p.0), mean(&|p| p.1));
+    let (tt, ty) = (mean(&|p| (p.0 - t).powi(2)), mean(&|p| (p.0 - t) * (p.1 - y)));
+    let slope = if tt > 0.0 { ty / tt } else { 0.0 };
+    points.iter().map(|p| (p.1 - y - slope * (p.0 - t)).powi(2)).sum::<f64>() / (n - 2.0)
 }
 
 /// What a loop does under the setpoints of a record, tick by tick from its first poll on.
@@ -153,8 +382,8 @@ struct Followed {
 }
 
 impl Followed {
-    /// `started` says whether the loop is at work before the first setpoint of the record. `offset_s` is how long after its stamp a
-    /// setpoint takes effect.
+    /// `before` is the setpoint before the first one of the record, where the loop is at work already. `offset_s` is how long after its stamp a setpoint
+    /// takes effect, but for the wait for a tick.
     fn new<L: Law>(
         record: &ClosedLoopRecord,
         mut twin: TickLoop<L>,
@@ -163,20 +392,29 @@ impl Followed {
         before: Option<f64>,
     ) -> Option<Self> {
         let tick_s = law.tick_s();
-        let (start, end) = (record.counts.first()?.0, record.counts.last()?.0);
-        let ticks = ((end - start) / tick_s) as usize + 2;
+        let start = record.counts.first()?.0;
+        let end = record.duties.last().map_or(start, |last| last.0).max(record.counts.last()?.0);
+        let ticks = ((end - start) / tick_s) as usize + 3;
         let (mut positions, mut duties) = (Vec::with_capacity(ticks), Vec::with_capacity(ticks));
         let (mut next, mut goal) = (0, before);
         for n in 0..ticks {
             let t = start + n as f64 * tick_s;
+            // On average over the phases of the tick, a setpoint comes into force over the length of one.
+            let share = |at: f64| ((t - at - offset_s) / tick_s + 0.5).clamp(0.0, 1.0);
             while let Some(&(at, speed)) = record.setpoints.get(next)
-                && at + offset_s <= t
+                && share(at) >= 1.0
             {
                 goal = Some(speed);
                 next += 1;
             }
             positions.push(twin.motion.position);
-            if let Some(speed) = goal {
+            let coming = record.setpoints.get(next).map(|&(at, speed)| (share(at), speed));
+            let now = match (goal, coming) {
+                (Some(old), Some((share, new))) => Some(old + share * (new - old)),
+                (None, Some((share, new))) if share > 0.5 => Some(new),
+                (old, _) => old,
+            };
+            if let Some(speed) = now {
                 twin.tick(Setpoint::Speed(speed), 0.0);
             }
             duties.push(twin.duty);
@@ -184,11 +422,19 @@ impl Followed {
         Some(Self { start, tick_s, positions, duties })
     }
 
-    fn position_at(&self, t: f64) -> f64 {
+    fn at(&self, values: &[f64], t: f64) -> f64 {
         // Assumed: the register is refreshed once a tick, so a reading is half a tick old on average.
         let x = ((t - self.start) / self.tick_s - 0.5).max(0.0);
-        let n = (x as usize).min(self.positions.len() - 2);
-        self.positions[n] + (self.positions[n + 1] - self.positions[n]) * (x - n as f64).min(1.0)
+        let n = (x as usize).min(values.len() - 2);
+        values[n] + (values[n + 1] - values[n]) * (x - n as f64).min(1.0)
+    }
+
+    fn position_at(&self, t: f64) -> f64 {
+        self.at(&self.positions, t)
+    }
+
+    fn duty_at(&self, t: f64) -> f64 {
+        self.at(&self.duties, t)
     }
 }
 
@@ -199,47 +445,70 @@ pub(crate) fn predicted_record<L: Law>(
     law: &L,
     before: f64,
 ) -> Option<ClosedLoopRecord> {
-    let followed = Followed::new(record, twin, law, 0.5 * law.tick_s(), Some(before))?;
+    let followed = Followed::new(record, twin, law, 0.0, Some(before))?;
     let counts = record.counts.iter().map(|&(t, _)| (t, followed.position_at(t).floor())).collect();
     Some(ClosedLoopRecord { setpoints: record.setpoints.clone(), counts, ..ClosedLoopRecord::default() })
 }
 
-/// Sum of the squared misfits of counts (differences between polls) and duties.
-fn mismatch<L: Law>(
+impl ClosedLoopRecord {
+    /// The start from rest is the business of friction and of the current limit, not of the lag: a record is judged from here on.
+    fn judged_from_s(&self) -> f64 {
+        self.setpoints.get(1).map_or(0.0, |second| second.0 - 0.01)
+    }
+}
+
+/// The misfits of counts and duties, in standard deviations. Counts drift off slowly, which a scalar Kalman filter follows; the duty may be off by a
+/// constant, which is friction.
+fn misfits<L: Law>(
     record: &ClosedLoopRecord,
     twin: TickLoop<L>,
     law: &L,
     offset_s: f64,
-    sigma_duty: f64,
-) -> f64 {
-    let Some(followed) = Followed::new(record, twin, law, offset_s, None) else { return f64::INFINITY };
-    let (start, tick_s, duties) = (followed.start, followed.tick_s, &followed.duties);
-    let ticks = duties.len();
-    let stamp_s = STAMP_S.hypot(record.stamp_s);
-    let mut sum = 0.0;
-    // The start from rest is the business of friction and of the current limit, not of the lag.
-    let from_s = record.setpoints.get(1).map_or(start, |second| second.0 - 0.01);
-    for pair in record.counts.windows(2) {
-        let ((t0, y0), (t1, y1)) = (pair[0], pair[1]);
-        if t0 < from_s {
-            continue;
-        }
-        let moved = followed.position_at(t1) - followed.position_at(t0);
-        let speed = (y1 - y0) / (t1 - t0).max(1e-4);
-        let variance = 0.66 + (stamp_s * speed).powi(2) + (0.01 * (y1 - y0)).powi(2);
-        sum += ((y1 - y0 - moved).powi(2) / variance).min(SOFT_SQUARE);
+    before: Option<f64>,
+    noise: f64,
+    all: &mut Vec<f64>,
+) {
+    let Some(followed) = Followed::new(record, twin, law, offset_s, before) else { return };
+    let tick_s = law.tick_s();
+    let from_s = record.judged_from_s();
+    let age_s = if record.is_dated { 0.0 } else { tick_s / 12.0_f64.sqrt() };
+    let stamp_s = PRIORS.stamp_s.hypot(record.stamp_s).hypot(age_s);
+    let mut drift: Option<(f64, f64, f64, f64)> = None;
+    for &(t, count) in record.counts.iter().filter(|count| count.0 >= from_s) {
+        let position = followed.position_at(t);
+        let error = count - position;
+        drift = Some(match drift {
+            None => (t, position, error, 1.0 / 12.0),
+            Some((t0, position0, known, variance)) => {
+                let dt = (t - t0).max(1e-4);
+                let speed = (position - position0) / dt;
+                let white = 1.0 / 12.0 + (stamp_s * speed).powi(2);
+                let walked = variance + (PRIORS.drift * speed).powi(2) * dt + 1e-3;
+                let spread = walked + white;
+                let innovation = error - known;
+                all.push(soft(innovation / spread.sqrt()));
+                let share = walked / spread;
+                (t, position, known + share * innovation, (1.0 - share) * walked)
+            }
+        });
     }
-    let duties_with = |winding_ticks: f64| -> f64 {
-        let misfit = |&(t, duty): &(f64, f64)| {
-            let n = (((t - start) / tick_s + winding_ticks).max(0.0) as usize).min(ticks - 1);
-            // A stamp may be off by a tick either way: a steep flank counts with its own height.
-            let (before, after) = (duties[n.saturating_sub(1)], duties[(n + 1).min(ticks - 1)]);
-            let variance = sigma_duty.powi(2) + (0.25 * (after - before)).powi(2);
-            ((duty - duties[n]).powi(2) / variance).min(SOFT_SQUARE)
-        };
-        record.duties.iter().filter(|duty| duty.0 > from_s).map(misfit).sum()
-    };
-    sum + WINDINGS_TICKS.iter().map(|&ticks| duties_with(ticks)).fold(f64::INFINITY, f64::min)
+    let half_s = 0.5 * tick_s + 0.001;
+    let judged = record.duties.iter().filter(|duty| duty.0 > from_s);
+    let compared: Vec<(f64, f64)> = judged
+        .map(|&(t, duty)| {
+            let flank = followed.duty_at(t + half_s) - followed.duty_at(t - half_s);
+            (duty - followed.duty_at(t), noise.hypot(PRIORS.flank * flank))
+        })
+        .collect();
+    let weights: f64 = compared.iter().map(|(_, sigma)| sigma.powi(-2)).sum();
+    let mean = compared.iter().map(|(rest, sigma)| rest * sigma.powi(-2)).sum::<f64>() / weights.max(1e-9);
+    all.extend(compared.iter().map(|(rest, sigma)| soft((rest - mean) / sigma)));
+}
+
+/// A residual whose square grows only linearly beyond some standard deviations (soft L1, Huber 1964).
+fn soft(r: f64) -> f64 {
+    let x = r / KNEE;
+    KNEE * (2.0 * ((1.0 + x * x).sqrt() - 1.0)).sqrt().copysign(x)
 }
 
 #[cfg(test)]
@@ -266,7 +535,7 @@ mod tests {
     };
 
     /// Steps of a loop with a known lag, polled every 12.3 ms.
-    fn known_record(lag: Lag) -> ClosedLoopRecord {
+    fn known_record(lag: Lag) -> Stretch {
         let law = PlainLaw::default();
         let mut twin = TickLoop::new(PLANT, law, lag, GAINS, 40_000.0);
         let mut record = ClosedLoopRecord::default();
@@ -289,7 +558,7 @@ mod tests {
                 poll += 0.0123;
             }
         }
-        record
+        Stretch { record, gains: GAINS, before: None }
     }
 
     #[test]
@@ -301,8 +570,7 @@ mod tests {
             Lag { filter_s: 0.010, delay_ticks: 0.0 },
             Lag { filter_s: 0.010, delay_ticks: 1.0 },
         ] {
-            let found =
-                fit_lag(&known_record(lag), &PLANT, &law, &GAINS, 40_000.0, 0.03).expect("enough readings");
+            let found = fit_lag(&[known_record(lag)], &PLANT, &law, 40_000.0, 0.03).expect("enough readings");
             let (got, wanted) = (found.lag.total_s(law.tick_s()), lag.total_s(law.tick_s()));
             assert!((got - wanted).abs() < 0.0025, "{got} s instead of {wanted} s: {found:?}");
             assert!(found.chi_square < 1.5, "{found:?}");
@@ -311,9 +579,6 @@ mod tests {
 
     #[test]
     fn a_record_without_steps_says_nothing() {
-        assert!(
-            fit_lag(&ClosedLoopRecord::default(), &PLANT, &PlainLaw::default(), &GAINS, 40_000.0, 0.1)
-                .is_none()
-        );
+        assert!(fit_lag(&[], &PLANT, &PlainLaw::default(), 40_000.0, 0.1).is_none());
     }
 }

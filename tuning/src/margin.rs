@@ -6,7 +6,7 @@ use crate::design::Task;
 use crate::experiment_guard::ExperimentGuard;
 use crate::law::Law;
 use crate::linear::{DiscretePlant, LoopPlant};
-use crate::model::{Gains, Lag, Pid};
+use crate::model::{Gains, Pid};
 use crate::oscillation::deviation;
 
 /// Gains tried, as multiples of the proposed ones, up to the margin that is wanted.
@@ -36,12 +36,8 @@ const LEAST_ROUGH: f64 = 0.012;
 /// would hide an oscillation.
 const DOUBTFUL: f64 = 2.0;
 
-/// The highest sensitivity of gains that are given without a warning.
+/// The highest sensitivity of gains that are given without a warning (Astrom and Murray, "Feedback Systems", 2nd edition, section 10.3: 1.2 to 2 are reasonable).
 const MOST_MS: f64 = 1.8;
-/// Lag that may be there beyond the measured one, s: the winding, up to 3 ms, and the error of the fit. Chosen on 420 runs (seeds 42 and 43 of
-/// the other make, 101 of the bench), 9 of which were above `MOST_MS` without a warning: with 2 ms five of them stay, with 3 ms one, a
-/// springy shaft; a fifth of the others is warned of, too.
-const UNSEEN_LAG_S: f64 = 0.003;
 
 /// A duty that is beyond the bound so many times over needs no second look.
 const AT_ONCE: f64 = 4.0;
@@ -61,14 +57,13 @@ pub(crate) struct Headroom {
     pub(crate) is_doubtful: bool,
 }
 
-/// Whether gains may be too sensitive for all that was measured: with the lag somewhat longer, or as long as the law may have it where raising
-/// the gains on the machine told nothing.
+/// Whether gains may be too sensitive for all that was measured: with the longest lag that is still likely, or as long as the law may have it where
+/// raising the gains on the machine told nothing.
 pub(crate) fn may_be_short<L: Law>(task: &Task<L>, gains: &Gains, is_doubtful: bool) -> bool {
     let tick_s = task.law.tick_s();
-    let longer = Lag { delay_ticks: task.lag.delay_ticks + UNSEEN_LAG_S / tick_s, ..task.lag };
     let longest = task.law.facts().longest_lag;
-    let is_longer = longest.total_s(tick_s) > longer.total_s(tick_s);
-    let lag = if is_doubtful && is_longer { longest } else { longer };
+    let is_longer = longest.total_s(tick_s) > task.worst_lag.total_s(tick_s);
+    let lag = if is_doubtful && is_longer { longest } else { task.worst_lag };
     let plant = LoopPlant::new(DiscretePlant::of(&task.plant, tick_s), &task.law, lag);
     plant.spectral_radius(gains, task.qpps) >= 1.0 || plant.margins(gains, task.qpps).ms > MOST_MS
 }

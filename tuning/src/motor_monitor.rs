@@ -49,7 +49,9 @@ const SWAYING: f64 = 0.08;
 /// From a poll to the command that it leads to, s; and the least share of a stopping distance that the motor's own slowing takes.
 const COMMAND_S: f64 = 0.012;
 const LEAST_TURN: f64 = 0.25;
-/// Highest reading that counts as no current, A: the wire's resolution.
+/// Highest reading that counts as no current of a sensor without noise, A: the wire's resolution. And how many standard deviations of the readings at
+/// rest it is of one with noise: of twenty readings of no current one in a hundred runs has one beyond it.
+pub(crate) const NOISES: f64 = 3.5;
 pub(crate) const NO_CURRENT_AMPS: f64 = 0.0151;
 
 /// The monitor of one motor.
@@ -59,6 +61,8 @@ pub struct MotorMonitor {
     pub stopping_s: f64,
     /// Amperes at full duty with the shaft at rest; `None` before the probe.
     pub stall_amps: Option<f64>,
+    /// Noise of the readings of the current at rest, root mean square, A; 0 before the probe.
+    pub(crate) noise_amps: f64,
     /// The current limit over the stall current, where there is one.
     pub drive_limit: Option<f64>,
     /// Duty at which the motor began to move; 0 before the probe.
@@ -451,11 +455,11 @@ impl MotorMonitor {
             return Ok(());
         }
         let Some(amps) = point.amps else { return Ok(()) };
-        if point.t - self.since_s > 0.3 && amps.abs() > 2.5 * NO_CURRENT_AMPS {
+        if point.t - self.since_s > 0.3 && amps.abs() > 2.5 * self.no_current_amps() {
             let lowest = self.running_amps.map_or(amps.abs(), |known| known.min(amps.abs()));
             self.running_amps = Some(lowest);
         }
-        if amps.abs() > NO_CURRENT_AMPS {
+        if amps.abs() > self.no_current_amps() {
             self.open_since_s = None;
             return Ok(());
         }
@@ -472,7 +476,7 @@ impl MotorMonitor {
             .filter(|point| point.t > since_s + PUSHED_S)
             .filter_map(|point| point.amps)
             .peekable();
-        self.draws() && since.peek().is_some() && since.all(|amps| amps.abs() <= NO_CURRENT_AMPS)
+        self.draws() && since.peek().is_some() && since.all(|amps| amps.abs() <= self.no_current_amps())
     }
 
     /// Whether the motor has kept its speed since then, though its friction alone would have slowed it down.
@@ -494,10 +498,15 @@ impl MotorMonitor {
         fall > clear && before * now > 0.0 && before.abs() - now.abs() < 0.6 * fall.min(before.abs())
     }
 
+    /// Highest reading that counts as no current, A.
+    pub(crate) fn no_current_amps(&self) -> f64 {
+        NO_CURRENT_AMPS.max(NOISES * self.noise_amps)
+    }
+
     /// Whether a turning motor draws a current that can be distinguished from none.
     pub(crate) fn draws(&self) -> bool {
-        self.running_amps.is_some_and(|running| running > 2.5 * NO_CURRENT_AMPS)
-            || self.stall_amps.is_some_and(|stall| stall * 0.015 > 2.0 * NO_CURRENT_AMPS)
+        self.running_amps.is_some_and(|running| running > 2.5 * self.no_current_amps())
+            || self.stall_amps.is_some_and(|stall| stall * 0.015 > 2.0 * self.no_current_amps())
     }
 
     fn slewed(&self, duty: f64, goal: f64, seconds: f64) -> f64 {

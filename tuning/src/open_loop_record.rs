@@ -100,13 +100,24 @@ impl OpenLoopRecord {
     /// Predicted counts at each poll, from the first one on, and battery voltages at each reading; each duty takes effect
     /// `offset_s` after its time stamp.
     pub fn predict(&self, model: &PlantModel, offset_s: f64, counts: &mut Vec<f64>, volts: &mut Vec<f64>) {
+        self.predict_with(&self.actuation, (model, offset_s), counts, volts);
+    }
+
+    /// The same of a controller that takes a duty otherwise.
+    pub(crate) fn predict_with(
+        &self,
+        actuation: &Actuation,
+        (model, offset_s): (&PlantModel, f64),
+        counts: &mut Vec<f64>,
+        volts: &mut Vec<f64>,
+    ) {
         counts.clear();
         volts.clear();
         let Some(&(start, _)) = self.counts.first() else { return };
         let motion = Motion { speed: self.start_speed, position: 0.0 };
-        let limiter = self.actuation.duty_limit.and_then(|limit| Limiter::new(limit, model.drive_limit));
+        let limiter = actuation.duty_limit.and_then(|limit| Limiter::new(limit, model.drive_limit));
         // A limit of the duty leaves none of the current.
-        let model = &match self.actuation.duty_limit {
+        let model = &match actuation.duty_limit {
             Some(_) => PlantModel { drive_limit: None, ..*model },
             None => *model,
         };
@@ -123,11 +134,11 @@ impl OpenLoopRecord {
             while let Some(&(at, duty)) = self.duties.get(next)
                 && at + offset_s <= t
             {
-                self.advance(model, &mut state, at + offset_s);
+                advance(actuation, model, &mut state, at + offset_s);
                 state.goal = duty;
                 next += 1;
             }
-            self.advance(model, &mut state, t);
+            advance(actuation, model, &mut state, t);
             counts.push(state.motion.position);
             if self.volts.get(volts.len()).is_some_and(|reading| reading.0 <= t) {
                 let limit = model.push_limit(state.duty, state.motion.speed).unwrap_or(f64::INFINITY);
@@ -137,32 +148,32 @@ impl OpenLoopRecord {
             }
         }
     }
+}
 
-    fn advance(&self, model: &PlantModel, state: &mut Cursor, to: f64) {
-        if self.actuation.slew_per_s.is_infinite() {
-            state.duty = state.goal;
-        }
-        if let Some(limiter) = state.limiter {
-            return advance_limited(model, &limiter, state, to);
-        }
-        while state.t < to - 1e-12 {
-            let left = to - state.t;
-            let gap = state.goal - state.duty;
-            let (step, duty) = if gap == 0.0 {
-                let longest = if model.drive_limit.is_some() { LIMITED_STEP_S } else { left };
-                (left.min(longest), state.duty)
-            } else {
-                let slew = self.actuation.slew_per_s;
-                let step = left.min(RAMP_STEP_S).min(gap.abs() / slew);
-                let change = (slew * step).min(gap.abs()) * gap.signum();
-                let middle = state.duty + 0.5 * change;
-                state.duty =
-                    if gap.abs() <= slew * step * 1.000_001 { state.goal } else { state.duty + change };
-                (step.max(1e-9), middle)
-            };
-            model.step(&mut state.motion, duty, step);
-            state.t += step;
-        }
+/// Moves on along the ramp of the duty.
+fn advance(actuation: &Actuation, model: &PlantModel, state: &mut Cursor, to: f64) {
+    if actuation.slew_per_s.is_infinite() {
+        state.duty = state.goal;
+    }
+    if let Some(limiter) = state.limiter {
+        return advance_limited(model, &limiter, state, to);
+    }
+    while state.t < to - 1e-12 {
+        let left = to - state.t;
+        let gap = state.goal - state.duty;
+        let (step, duty) = if gap == 0.0 {
+            let longest = if model.drive_limit.is_some() { LIMITED_STEP_S } else { left };
+            (left.min(longest), state.duty)
+        } else {
+            let slew = actuation.slew_per_s;
+            let step = left.min(RAMP_STEP_S).min(gap.abs() / slew);
+            let change = (slew * step).min(gap.abs()) * gap.signum();
+            let middle = state.duty + 0.5 * change;
+            state.duty = if gap.abs() <= slew * step * 1.000_001 { state.goal } else { state.duty + change };
+            (step.max(1e-9), middle)
+        };
+        model.step(&mut state.motion, duty, step);
+        state.t += step;
     }
 }
 

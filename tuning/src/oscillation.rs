@@ -26,9 +26,23 @@ pub(crate) fn deviation(values: &[(f64, f64)]) -> f64 {
     (rest.iter().map(|r| r.1 * r.1).sum::<f64>() / (rest.len() as f64 - 4.0)).sqrt()
 }
 
-/// Root mean square of the speed about a plateau in counts/s, as far as it is more than rounding and stamps make up. `plateau` is a part
-/// of the record.
-pub(crate) fn speed_ripple(plateau: &[(f64, f64)], record: &ClosedLoopRecord) -> f64 {
+/// How many times louder a speed may be than the duty that answers it says: a loop answers every oscillation that it sees. What the polls make up
+/// of the age of a register, which beats with the tick, is not in the duty.
+const LOUDER: f64 = 2.0;
+
+/// What a loop answers to a speed: its duties over the same plateau, and the duty that a speed of 1 count/s at an angular frequency makes.
+pub(crate) struct Answer<'a> {
+    pub(crate) duties: &'a [(f64, f64)],
+    pub(crate) duty_per_speed: &'a dyn Fn(f64) -> f64,
+}
+
+/// Root mean square of the speed about a plateau in counts/s, as far as it is more than rounding and stamps make up, and as far as the loop answers
+/// it. `plateau` is a part of the record.
+pub(crate) fn speed_ripple(
+    plateau: &[(f64, f64)],
+    record: &ClosedLoopRecord,
+    answer: Option<&Answer<'_>>,
+) -> f64 {
     let highest_hz = if record.is_dated { DATED_OSCILLATIONS_HZ } else { OSCILLATIONS_HZ.1 };
     let (Some(first), Some(last)) = (plateau.first(), plateau.last()) else { return 0.0 };
     let seconds = last.0 - first.0;
@@ -39,17 +53,18 @@ pub(crate) fn speed_ripple(plateau: &[(f64, f64)], record: &ClosedLoopRecord) ->
     let rest = detrended(plateau);
     let n = rest.len() as f64;
     let nyquist = 0.45 * n / seconds;
-    let mean_square = |w: f64| {
-        let project =
-            |(c, s): (f64, f64), (t, y): &(f64, f64)| (c + y * (w * t).cos(), s + y * (w * t).sin());
-        let (c, s) = rest.iter().fold((0.0, 0.0), project);
-        2.0 * (c * c + s * s) / (n * n)
+    let answered = answer.filter(|answer| answer.duties.len() >= 20);
+    let duties = answered.map(|answer| detrended(answer.duties)).unwrap_or_default();
+    let most = |w: f64| {
+        let bound =
+            |answer: &Answer<'_>| (LOUDER / (answer.duty_per_speed)(w)).powi(2) * mean_square(&duties, w);
+        answered.map_or(f64::INFINITY, bound)
     };
     let first = (OSCILLATIONS_HZ.0 * seconds).ceil().max(3.0) as usize;
     let sines: Vec<(f64, f64)> = (first..)
         .map(|k| TAU * k as f64 / seconds)
         .take_while(|w| *w <= TAU * nyquist)
-        .map(|w| (w, mean_square(w)))
+        .map(|w| (w, mean_square(&rest, w)))
         .collect();
     // What noise alone gives each sine: what is known of it, or what most sines show (exponentially distributed) where that is less.
     let known = 2.0 * (ROUNDING + (STAMP_S.hypot(record.stamp_s) * speed).powi(2)) / n;
@@ -58,7 +73,15 @@ pub(crate) fn speed_ripple(plateau: &[(f64, f64)], record: &ClosedLoopRecord) ->
     let middle = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
     let floor = known.min(middle / std::f64::consts::LN_2);
     let looked_at = sines.iter().take_while(|(w, _)| *w <= TAU * highest_hz);
-    looked_at.map(|(w, square)| w * w * (square - floor)).sum::<f64>().max(0.0).sqrt()
+    looked_at.map(|(w, square)| (w * w * (square - floor)).min(most(*w))).sum::<f64>().max(0.0).sqrt()
+}
+
+/// Mean square of a sine in values about their trend.
+fn mean_square(rest: &[(f64, f64)], w: f64) -> f64 {
+    let n = rest.len() as f64;
+    let project = |(c, s): (f64, f64), (t, y): &(f64, f64)| (c + y * (w * t).cos(), s + y * (w * t).sin());
+    let (c, s) = rest.iter().fold((0.0, 0.0), project);
+    2.0 * (c * c + s * s) / (n * n)
 }
 
 /// How far the speed goes past its setpoint after a flank, over the step: the flanks of the record laid over each other.
@@ -126,10 +149,13 @@ mod tests {
     fn a_sine_on_a_plateau_has_its_root_mean_square_and_a_plain_one_next_to_none() {
         // 60 counts/s about 1500 at 8 Hz.
         let w = TAU * 8.0;
-        let oscillating =
-            speed_ripple(&plateau(|t| 1_500.0 * t - 60.0 / w * (w * t).cos()), &ClosedLoopRecord::default());
+        let oscillating = speed_ripple(
+            &plateau(|t| 1_500.0 * t - 60.0 / w * (w * t).cos()),
+            &ClosedLoopRecord::default(),
+            None,
+        );
         assert!((oscillating / (60.0 / 2.0_f64.sqrt()) - 1.0).abs() < 0.2, "{oscillating}");
-        assert!(speed_ripple(&plateau(|t| 1_500.0 * t), &ClosedLoopRecord::default()) < 10.0);
+        assert!(speed_ripple(&plateau(|t| 1_500.0 * t), &ClosedLoopRecord::default(), None) < 10.0);
     }
 
     #[test]
@@ -137,16 +163,19 @@ mod tests {
         let w = TAU * 24.0;
         let counts = plateau(|t| 1_500.0 * t - 300.0 / w * (w * t).cos());
         let dated = ClosedLoopRecord { is_dated: true, ..ClosedLoopRecord::default() };
-        let oscillating = speed_ripple(&counts, &dated);
+        let oscillating = speed_ripple(&counts, &dated, None);
         assert!((oscillating / (300.0 / 2.0_f64.sqrt()) - 1.0).abs() < 0.2, "{oscillating}");
-        assert!(speed_ripple(&plateau(|t| 1_500.0 * t), &dated) < 40.0);
-        assert!(speed_ripple(&counts, &ClosedLoopRecord::default()) < 0.1 * oscillating);
+        assert!(speed_ripple(&plateau(|t| 1_500.0 * t), &dated, None) < 40.0);
+        assert!(speed_ripple(&counts, &ClosedLoopRecord::default(), None) < 0.1 * oscillating);
     }
 
     #[test]
     fn a_speed_that_settles_slowly_is_no_oscillation() {
-        let settling =
-            speed_ripple(&plateau(|t| 1_500.0 * t + 200.0 * (-t / 0.8).exp()), &ClosedLoopRecord::default());
+        let settling = speed_ripple(
+            &plateau(|t| 1_500.0 * t + 200.0 * (-t / 0.8).exp()),
+            &ClosedLoopRecord::default(),
+            None,
+        );
         assert!(settling < 15.0, "{settling}");
     }
 

@@ -7,6 +7,9 @@ use crate::model::{Gains, Lag, Motion, PlantModel};
 use crate::score::{LOAD_STEP_DUTY, Score, VELOCITY_STEP, horizon_s, position_step};
 pub use crate::setpoint::Setpoint;
 
+/// Duties under way: two ticks more than the longest delay at the highest rate.
+const QUEUE: usize = 17;
+
 /// A loop in simulation.
 #[derive(Clone, Debug)]
 pub struct TickLoop<L: Law> {
@@ -22,7 +25,11 @@ pub struct TickLoop<L: Law> {
     filtered: f64,
     state: L::Loop,
     limit: LimiterState,
-    queue: [f64; 9],
+    queue: [f64; QUEUE],
+    /// Time constant of the winding, s, where it is told from the delay.
+    pub winding_s: f64,
+    /// What the winding makes of the duty.
+    torque_duty: f64,
     smooth: bool,
     /// The duty given in the last tick.
     pub duty: f64,
@@ -43,7 +50,9 @@ impl<L: Law> TickLoop<L> {
             filtered: 0.0,
             state: L::Loop::default(),
             limit: LimiterState::default(),
-            queue: [0.0; 9],
+            queue: [0.0; QUEUE],
+            winding_s: 0.0,
+            torque_duty: 0.0,
             smooth: false,
             duty: 0.0,
         }
@@ -63,7 +72,8 @@ impl<L: Law> TickLoop<L> {
         let plant = &self.plant;
         let duty = speed / plant.gain_counts_per_s + plant.coulomb_duty * speed.signum() + plant.load_duty;
         self.state = self.law.steady((&self.gains, self.qpps), speed, duty);
-        self.queue = [duty; 9];
+        self.queue = [duty; QUEUE];
+        self.torque_duty = duty;
         self.duty = duty;
     }
 
@@ -85,31 +95,44 @@ impl<L: Law> TickLoop<L> {
         let duty = self.law.tick(&mut self.state, (&self.gains, self.qpps), setpoint, &seen);
         self.queue.rotate_right(1);
         self.queue[0] = duty;
-        let whole = (self.lag.delay_ticks.floor() as usize).min(7);
+        let whole = (self.lag.delay_ticks.floor() as usize).min(QUEUE - 2);
         let part = self.lag.delay_ticks - whole as f64;
         self.duty = self.queue[whole] * (1.0 - part) + self.queue[whole + 1] * part;
         let mut plant = self.plant;
         plant.load_duty += load_duty;
+        let acting = self.through_winding();
         if let Some(limit) = self.law.duty_limit() {
-            self.step_limited(limit, &plant);
+            self.step_limited(limit, &plant, acting);
         } else if plant.drive_limit.is_some() {
             for _ in 0..2 {
-                plant.step(&mut self.motion, self.duty, 0.5 * tick_s);
+                plant.step(&mut self.motion, acting, 0.5 * tick_s);
             }
         } else {
-            plant.step(&mut self.motion, self.duty, tick_s);
+            plant.step(&mut self.motion, acting, tick_s);
         }
         self.duty
     }
 
+    /// The mean over a tick of what the winding lets act.
+    fn through_winding(&mut self) -> f64 {
+        let tick_s = self.law.tick_s();
+        if self.winding_s <= 0.01 * tick_s {
+            return self.duty;
+        }
+        let decay = (-tick_s / self.winding_s).exp();
+        let before = self.torque_duty - self.duty;
+        self.torque_duty = self.duty + before * decay;
+        self.duty + before * (1.0 - decay) * self.winding_s / tick_s
+    }
+
     /// A tick under a limiter that follows the current with the duty.
-    fn step_limited(&mut self, limit: DutyLimit, plant: &PlantModel) {
+    fn step_limited(&mut self, limit: DutyLimit, plant: &PlantModel, acting: f64) {
         let tick_s = self.law.tick_s();
         let before = self.motion.speed;
-        PlantModel { drive_limit: None, ..*plant }.step(&mut self.motion, self.duty, tick_s);
+        PlantModel { drive_limit: None, ..*plant }.step(&mut self.motion, acting, tick_s);
         if let Some(limiter) = Limiter::new(limit, plant.drive_limit) {
             let emf = 0.5 * (before + self.motion.speed) / plant.gain_counts_per_s;
-            limiter.see(&mut self.limit, self.duty - emf, tick_s);
+            limiter.see(&mut self.limit, acting - emf, tick_s);
         }
     }
 }

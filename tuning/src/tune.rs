@@ -29,12 +29,12 @@ const LOOSEST_TAU: f64 = 0.5;
 /// Duty by which a load is above the friction before it is called heavy.
 const SURELY_HEAVY: f64 = 0.005;
 /// Misfit of the closed loop beyond which the model is taken as incomplete, and what is then left of the sensitivity's excess.
-const ODD_CHI_SQUARE: f64 = 2.2;
+const ODD_CHI_SQUARE: f64 = 1.5;
 const ODD_SHARE: f64 = 0.6;
 /// The overshoot that is then designed for.
 const SHORT_OVERSHOOT: f64 = 0.15;
 /// Misfit that speaks of backlash, and the shortest integral time of such a machine, in time constants.
-const LOOSE_CHI_SQUARE: f64 = 2.3;
+const LOOSE_CHI_SQUARE: f64 = 1.6;
 const LOOSE_INTEGRAL: f64 = 1.2;
 /// Share of the travel window that has to be free around the axis, and the narrowest window, counts.
 const ENOUGH_ROOM: f64 = 0.8;
@@ -430,14 +430,20 @@ fn settle_lag<L: Law>(
 }
 
 fn with_lag<L: Law>(task: Task<L>, found: &LagFit) -> Task<L> {
-    let wide = found.interval_s.1 - found.interval_s.0 > WIDEST_LAG_S;
-    if wide && found.interval_s.0 <= task.law.facts().usual_lag.total_s(task.law.tick_s()) {
-        return task;
-    }
     let plant = PlantModel { tau_s: task.plant.tau_s * found.tau_scale, ..task.plant };
     // The winding and whatever else the model leaves out.
     let worst_lag =
         Lag { delay_ticks: found.worst.delay_ticks + task.law.facts().unmodelled_ticks, ..found.worst };
+    // A record that says little leaves what such a controller may have.
+    let longest = task.law.facts().longest_lag;
+    let tick_s = task.law.tick_s();
+    let is_wide = found.interval_s.1 - found.interval_s.0 > WIDEST_LAG_S;
+    let is_within = found.lag.total_s(tick_s) < longest.total_s(tick_s);
+    let worst_lag = if is_wide && is_within && worst_lag.total_s(tick_s) > longest.total_s(tick_s) {
+        longest
+    } else {
+        worst_lag
+    };
     let (mut goal, mut least_integral_s, mut most_overshoot) = (task.goal, 0.0, task.most_overshoot);
     if found.chi_square > ODD_CHI_SQUARE {
         // Something oscillates or has backlash that the model knows nothing of: keep more distance.

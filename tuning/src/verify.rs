@@ -5,12 +5,12 @@ use crate::cause::Cause;
 use crate::design::{Design, Goal, Task, deadzone};
 use crate::experiment::rest;
 use crate::experiment_guard::{ExperimentGuard, Point};
-use crate::lag::{ClosedLoopRecord, LagFit, fit_lag, predicted_record};
+use crate::lag::{ClosedLoopRecord, LagFit, Stretch, fit_lag, predicted_record};
 use crate::law::Law;
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::margin::{headroom, may_be_short, scaled};
 use crate::model::{Gains, Pid};
-use crate::oscillation::{deviation, flank_overshoot, speed_ripple};
+use crate::oscillation::{Answer, deviation, flank_overshoot, speed_ripple};
 use crate::proposal::{design_for, propose};
 use crate::report::{Measured, Report};
 use crate::request::{Excitation, Method, Request};
@@ -23,6 +23,17 @@ const MIDDLE: f64 = 0.45;
 const STEPS: usize = 6;
 /// Share of a travel window that one stroke of a velocity trial inside it covers.
 const INSIDE_SHARE: f64 = 0.35;
+/// What a step of the trial asks of the duty at once, and at the least; the share of what the current limit leaves that it may be; bounds of its height,
+/// share of full speed.
+const LAG_SPEED: f64 = 0.45;
+const STEP_JUMP: f64 = 0.7;
+const LEAST_JUMP: f64 = 0.05;
+const BELOW_LIMIT: f64 = 0.8;
+const LEAST_STEP: f64 = 0.02;
+const MOST_STEP: f64 = 0.3;
+/// Misfit of the closed loop from which on its lag is not all that there may be: a springy joint of seed 905 of the bench that was called tuned at a true Ms of 1.9 has 1.32,
+/// rigid motors up to 1.26.
+const UNEXPLAINED: f64 = 1.25;
 /// Irregular dwell times, relative: no limit cycle can hide in step with them.
 const DWELLS: [f64; STEPS] = [1.0, 0.87, 1.15, 0.93, 1.17, 0.83];
 /// Overshoot of a move that a position loop may show, and by how much it may be more than predicted.
@@ -61,7 +72,8 @@ pub fn measure_lag<L: Law>(
 ) -> Result<Option<(LagFit, f64)>, Cause> {
     let (from_s, to_s) = run_steps(guard, task, gains)?;
     let record = ClosedLoopRecord::of(guard, from_s, to_s);
-    let Some(found) = fit_lag(&record, &task.plant, &task.law, gains, task.qpps, sd_ln_tau) else {
+    let stretch = Stretch { record, gains: *gains, before: None };
+    let Some(found) = fit_lag(&[stretch], &task.plant, &task.law, task.qpps, sd_ln_tau) else {
         return Ok(None);
     };
     let noise = LoopPlant::new(DiscretePlant::of(&task.plant, task.law.tick_s()), &task.law, found.lag)
@@ -81,18 +93,24 @@ fn run_steps<L: Law>(
     gains: &Gains,
 ) -> Result<(f64, f64), Cause> {
     let p = gains.velocity.p;
-    let height = ((0.7 / (1.0 + p)).clamp(0.03, 0.3) * task.qpps).max(2.0 * guard.speed_step());
+    // Whether a controller reads back the duty before or after its current limit is not known: the steps stay below it.
+    let limits = [task.plant.drive_limit, task.plant.brake_limit];
+    let least = limits.into_iter().flatten().fold(f64::INFINITY, f64::min);
+    let eaten = task.plant.coulomb_duty + task.plant.load_duty.abs();
+    let room = BELOW_LIMIT * (least - eaten).min(1.0 - LAG_SPEED - eaten);
+    let jump = room.clamp(LEAST_JUMP, STEP_JUMP);
+    let height = ((jump / (1.0 + p)).clamp(LEAST_STEP, MOST_STEP) * task.qpps).max(2.0 * guard.speed_step());
     let lag_s = task.lag.total_s(task.law.tick_s()) + 2.0 * task.law.tick_s();
     let dwell_s = (14.0 * lag_s + task.plant.tau_s / (1.0 + p)).clamp(0.2, 1.0);
     guard.duty(0.0)?;
     rest(guard, task.plant.tau_s, task.qpps)?;
     let from_s = guard.now_s();
     guard.poll(true)?;
-    guard.speed(MIDDLE * task.qpps - 0.5 * height)?;
+    guard.speed(LAG_SPEED * task.qpps - 0.5 * height)?;
     guard.poll_for((2.5 * task.plant.tau_s).clamp(0.3, 2.0), true)?;
     for (n, dwell) in DWELLS.iter().enumerate() {
         let side = if n % 2 == 0 { 0.5 } else { -0.5 };
-        guard.speed(MIDDLE * task.qpps + side * height)?;
+        guard.speed(LAG_SPEED * task.qpps + side * height)?;
         guard.poll_for(dwell_s * dwell, true)?;
     }
     let to_s = guard.now_s();
@@ -109,7 +127,8 @@ pub fn check_moves<L: Law>(
     report: &mut Report<L>,
 ) -> Result<(), Cause> {
     let found = leave_room(guard, request, task, report)?;
-    let is_doubtful = found.is_some_and(|(_, is_doubtful)| is_doubtful);
+    let is_unexplained = report.lag.is_some_and(|lag| lag.chi_square > UNEXPLAINED);
+    let is_doubtful = is_unexplained || found.is_some_and(|(_, is_doubtful)| is_doubtful);
     try_until_smooth(guard, request, task, report, found.map(|(room, _)| room))?;
     if report.design.is_some_and(|design| may_be_short(task, &design.gains, is_doubtful)) {
         report.causes.push(Cause::MarginUnsure);
@@ -326,6 +345,11 @@ pub(crate) fn try_velocity<L: Law>(
     {
         return Err(Cause::NotVerified);
     }
+    let velocity = gains.velocity;
+    let duty_per_speed =
+        |w: f64| velocity.p.hypot(velocity.i / w) / task.qpps / 1.0_f64.hypot(w * task.lag.filter_s);
+    // Readings that come with their time make nothing up.
+    let answer = (!record.is_dated).then_some(Answer { duties: &duties, duty_per_speed: &duty_per_speed });
     let seen = |record: &ClosedLoopRecord| flank_overshoot(record, high - low, guard.options.poll_s);
     let mut twin = TickLoop::new(task.plant, task.law, task.lag, *gains, task.qpps);
     twin.start_steady(low);
@@ -334,7 +358,7 @@ pub(crate) fn try_velocity<L: Law>(
     Ok(Measured {
         overshoot: (predicted.overshoot + seen(&record) - expected).max(0.0),
         duty_rms: deviation(&duties),
-        ripple: speed_ripple(&stay, &record) / (high - low),
+        ripple: speed_ripple(&stay, &record, answer.as_ref()) / (high - low),
         headroom: None,
     })
 }

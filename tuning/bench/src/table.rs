@@ -69,10 +69,26 @@ pub struct Identification {
     pub tau_error_median: f64,
     /// Time constant of plants slower than 30 ms.
     pub tau_error_p95: f64,
-    /// Lag of the firmware, ms.
+    /// Lag of firmware and winding, ms.
     pub lag_error_ms_median: f64,
-    /// Lag of the firmware, ms.
+    /// Lag of firmware and winding, ms.
     pub lag_error_ms_p95: f64,
+    /// Runs whose interval of QPPS holds it, %.
+    pub qpps_inside: f64,
+    /// Whole width of that interval, median, %.
+    pub qpps_width: f64,
+    /// Runs whose interval of the gain holds it, %.
+    pub gain_inside: f64,
+    /// Whole width of that interval, median, %.
+    pub gain_width: f64,
+    /// Runs whose interval of the time constant holds it, %.
+    pub tau_inside: f64,
+    /// Whole width of that interval, median, %.
+    pub tau_width: f64,
+    /// Runs whose interval of the lag holds it, %.
+    pub lag_inside: f64,
+    /// Whole width of that interval, median, ms.
+    pub lag_width_ms: f64,
     /// Predicted against true maximum sensitivity of the velocity loop.
     pub ms_error_p95: f64,
     /// Maximum sensitivity of our velocity loop at half or half as much more inertia.
@@ -294,6 +310,9 @@ fn error_percent(got: f64, wanted: f64) -> f64 {
 /// How far a report is from the truth.
 type ErrorOf<L> = dyn Fn(&Truth<L>, &report::Report<L>) -> Option<f64>;
 
+/// Whether an interval of a report holds the truth.
+type HoldsOf<L> = dyn Fn(&Truth<L>, &report::Report<L>) -> Option<bool>;
+
 /// What the velocity runs found against the truth: (truth, report, peak current over the stall current) of each plant, and how far
 /// the predicted sensitivities were off.
 fn identification_of<'a, L: Law>(
@@ -314,7 +333,14 @@ fn identification_of<'a, L: Law>(
     };
     let lag = |truth: &Truth<L>, report: &report::Report<L>| {
         let tick_s = truth.law.tick_s();
-        Some(1e3 * (report.lag?.lag.total_s(tick_s) - truth.lag.total_s(tick_s)).abs())
+        Some(1e3 * (report.lag?.lag.total_s(tick_s) - truth.whole_lag_s()).abs())
+    };
+    let inside = |holds: &HoldsOf<L>| {
+        let all: Vec<bool> = found.iter().filter_map(|(truth, report, _)| holds(truth, report)).collect();
+        100.0 * all.iter().filter(|holds| **holds).count() as f64 / all.len().max(1) as f64
+    };
+    let width = |of: &dyn Fn(&report::Report<L>) -> Option<f64>| {
+        quantile(found.iter().filter_map(|(_, report, _)| of(report)), 0.5)
     };
     Identification {
         qpps_error_median: round(of(&qpps, 0.5), 3),
@@ -325,6 +351,42 @@ fn identification_of<'a, L: Law>(
         tau_error_p95: round(of(&tau, 0.95), 2),
         lag_error_ms_median: round(of(&lag, 0.5), 2),
         lag_error_ms_p95: round(of(&lag, 0.95), 2),
+        qpps_inside: round(
+            inside(&|truth, report| {
+                let (found, free) = (report.qpps?, report.free?);
+                Some((found / truth.qpps - 1.0).abs() <= free.interval)
+            }),
+            1,
+        ),
+        qpps_width: round(width(&|report| Some(200.0 * report.free?.interval)), 2),
+        gain_inside: round(
+            inside(&|truth, report| {
+                let fit = report.fit?;
+                let error = (fit.model.gain_counts_per_s / truth.gain_counts_per_s).ln().abs();
+                Some(error <= 2.0 * fit.sd_ln_gain)
+            }),
+            1,
+        ),
+        gain_width: round(width(&|report| Some(400.0 * report.fit?.sd_ln_gain)), 2),
+        tau_inside: round(
+            inside(&|truth, report| {
+                let fit = report.fit?;
+                Some((fit.model.tau_s / truth.tau_s).ln().abs() <= 2.0 * fit.sd_ln_tau)
+            }),
+            1,
+        ),
+        tau_width: round(width(&|report| Some(400.0 * report.fit?.sd_ln_tau)), 2),
+        lag_inside: round(
+            inside(&|truth, report| {
+                let (low, high) = report.lag?.interval_s;
+                Some((low..=high).contains(&truth.whole_lag_s()))
+            }),
+            1,
+        ),
+        lag_width_ms: round(
+            width(&|report| report.lag.map(|lag| 1e3 * (lag.interval_s.1 - lag.interval_s.0))),
+            2,
+        ),
         ms_error_p95: round(quantile(ms.iter().copied(), 0.95), 3),
         seconds_median: round(quantile(found.iter().map(|(_, report, _)| report.seconds.0), 0.5), 2),
         peak_current_p95: round(100.0 * quantile(found.iter().map(|(_, _, peak)| *peak), 0.95), 1),

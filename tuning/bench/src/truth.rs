@@ -23,10 +23,20 @@ pub struct Truth<L: Law> {
     pub law: L,
     /// Filter and delay of the firmware.
     pub lag: Lag,
+    /// Time constant of the winding, s.
+    pub winding_s: f64,
     /// The linear loop at the tick.
     pub nominal: LoopPlant,
     /// The same with the inertia halved, and half as large again.
     pub varied: [LoopPlant; 2],
+}
+
+impl<L: Law> Truth<L> {
+    /// All that the loop loses between the motion and the torque, beyond the hold and the count difference of a tick, s.
+    #[must_use]
+    pub fn whole_lag_s(&self) -> f64 {
+        self.lag.total_s(self.law.tick_s()) + self.winding_s
+    }
 }
 
 /// The truth of a plant under a law with a lag.
@@ -41,6 +51,7 @@ pub(crate) fn truth_under<U, L: Law>(specimen: &Specimen<U>, law: L, lag: Lag) -
         qpps: full_speed(specimen),
         law,
         lag,
+        winding_s: axis.motor.armature_henries / ohms(specimen),
         nominal: of(1.0),
         varied: [of(0.5), of(1.5)],
     }

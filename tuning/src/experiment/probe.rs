@@ -4,6 +4,7 @@
 use crate::cause::Cause;
 use crate::experiment_guard::ExperimentGuard;
 use crate::law::Law;
+use crate::motor_monitor::{NO_CURRENT_AMPS, NOISES};
 use serde::{Deserialize, Serialize};
 
 /// Time at rest first, s.
@@ -15,8 +16,8 @@ const LAST_DUTY: f64 = 0.40;
 const STEP_S: f64 = 0.06;
 /// Counts that are a motion.
 const MOTION_COUNTS: f64 = 4.0;
-/// Readings up to this are no current, A.
-const NO_CURRENT_AMPS: f64 = 0.0151;
+/// Readings at the beginning of the ramp from which the current of the resting motor is read, at the least.
+const LEAST_READINGS: usize = 2;
 
 /// What the probe found.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -38,10 +39,15 @@ pub struct Probe {
 pub fn run_probe<L: Law>(guard: &mut ExperimentGuard<'_, L>, direction: f64) -> Result<Probe, Cause> {
     guard.duty(0.0)?;
     guard.poll_for(REST_S, false)?;
+    guard.refuse_slow_line()?;
     let rest = guard.points.last().map_or(0.0, |p| p.counts);
     let noise = spread(guard.points.iter().map(|p| p.counts));
     let noise_counts = deviation(guard.points.iter().map(|p| p.counts));
     let volts = guard.mean_volts(0.0, f64::INFINITY);
+    let at_rest: Vec<f64> = guard.points.iter().filter_map(|point| point.amps).collect();
+    let squares: f64 = at_rest.iter().map(|amps| amps * amps).sum();
+    guard.monitor.noise_amps = (squares / at_rest.len().max(1) as f64).sqrt();
+    let no_current = guard.monitor.no_current_amps();
     let mut readings: Vec<(f64, f64)> = Vec::new();
     let highest = LAST_DUTY.min(guard.options.max_duty);
     let begin = guard.now_s();
@@ -72,9 +78,7 @@ pub fn run_probe<L: Law>(guard: &mut ExperimentGuard<'_, L>, direction: f64) -> 
         readings.extend(latest.map(|amps| (duty, amps)));
     }
     let peak_amps = readings.iter().map(|r| r.1).fold(0.0, f64::max);
-    // The steepest current per duty is that of the motor at rest.
-    let steepest =
-        readings.iter().filter(|r| r.1 > 2.0 * NO_CURRENT_AMPS).map(|r| r.1 / r.0).fold(0.0, f64::max);
+    let steepest = steepest(&readings, no_current);
     let stall_amps = (steepest > 0.0).then_some(steepest);
     match moved {
         Some((_, by)) if by < 0.0 => Err(Cause::EncoderReversed),
@@ -96,7 +100,7 @@ fn nothing_moved<L: Law>(
     if readings.is_empty() {
         return Ok(Cause::NothingCounted);
     }
-    if peak_amps <= NO_CURRENT_AMPS {
+    if peak_amps <= guard.monitor.no_current_amps() {
         return Ok(Cause::MotorOpen);
     }
     let (last_duty, last_amps) = readings.last().copied().unwrap_or((LAST_DUTY, peak_amps));
@@ -109,8 +113,28 @@ fn nothing_moved<L: Law>(
     guard.poll_for(0.09, false)?;
     let braking =
         guard.points.iter().filter(|p| p.t > from).filter_map(|p| p.amps).map(f64::abs).fold(0.0, f64::max);
-    let turns = braking > (2.0 * NO_CURRENT_AMPS).max(0.03 * steepest * last_duty);
+    let turns = braking > (2.0 * guard.monitor.no_current_amps()).max(0.03 * steepest * last_duty);
     Ok(if turns { Cause::EncoderDead } else { Cause::ShaftLocked })
+}
+
+/// The steepest current per duty, A: that of the motor at rest. Where the sensor is noisy, a single reading at a small duty would be too high by half: then it is
+/// the steepest line through the first readings, two of them or more, each as it lies a standard deviation below what was fitted.
+fn steepest(readings: &[(f64, f64)], no_current: f64) -> f64 {
+    let single = readings.iter().filter(|r| r.1 > 2.0 * no_current).map(|r| r.1 / r.0).fold(0.0, f64::max);
+    if no_current <= NO_CURRENT_AMPS || readings.len() < LEAST_READINGS {
+        return single;
+    }
+    let (mut duties, mut products) = (0.0, 0.0);
+    let mut best: Option<(f64, f64)> = None;
+    for (n, (duty, amps)) in readings.iter().enumerate() {
+        (duties, products) = (duties + duty * duty, products + duty * amps);
+        let (slope, noise) = (products / duties, no_current / NOISES / duties.sqrt());
+        let is_surer = best.is_none_or(|known| slope - noise > known.0 - known.1);
+        if n + 1 >= LEAST_READINGS && is_surer && slope > 2.0 * noise {
+            best = Some((slope, noise));
+        }
+    }
+    best.map_or(0.0, |known| known.0)
 }
 
 fn deviation(values: impl Iterator<Item = f64> + Clone) -> f64 {

@@ -41,6 +41,10 @@ fn steps(cause: Cause) -> &'static [&'static str] {
             "Choose By fit: it needs no steady speed at two duties and no limit cycle.",
             "Or try about another duty, and allow more of it.",
         ],
+        Cause::LineTooSlow { .. } => &[
+            "Connect the controller by a cable: a radio, a network or an adapter that holds bytes back adds its latency to every reading.",
+            "Or raise the baud rate.",
+        ],
         Cause::OutsideTravel => &[
             "Move the axis by hand, or on the PWM screen with little duty, until its counts lie within the travel.",
             "Or give a travel around where it stands.",

@@ -79,11 +79,13 @@ impl LawRun {
     #[must_use]
     pub fn line(&self) -> String {
         let law = &self.plant.unit;
+        let winding_s = UnderTest::new(self.plant.clone()).truth.winding_s;
         let filter_s = match law.velocity_estimate {
             VelocityEstimate::LowPass { time_constant_s } => time_constant_s,
             VelocityEstimate::LastTick | VelocityEstimate::MovingAverage { .. } => 0.0,
         };
-        let lag_ms = 1e3 * (filter_s + f64::from(law.output_delay_ticks) / f64::from(law.rate_hz));
+        let lag_ms =
+            1e3 * (winding_s + filter_s + f64::from(law.output_delay_ticks) / f64::from(law.rate_hz));
         let found = self.report.lag.map_or_else(String::new, |lag| {
             let tick_s = 1.0 / f64::from(self.report.request.law.rate_hz);
             let (low, high) = lag.interval_s;

@@ -56,7 +56,8 @@ fn an_open_lead_under_noise_is_called_by_no_other_name() {
             misnamed += usize::from(!is_guess_right);
         }
     }
-    assert!(misnamed > 0, "so little noise misleads nobody");
+    // Since the noise is measured at rest, the readings alone say it too; before, some of these were a dead encoder or a locked shaft.
+    assert_eq!(misnamed, 0, "by the readings alone");
 }
 
 #[test]

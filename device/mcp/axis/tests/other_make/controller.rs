@@ -43,9 +43,10 @@ impl LawOptions {
         if self.filter_s > 0.0 { 1.0 - (-self.tick_s() / self.filter_s).exp() } else { 1.0 }
     }
 
-    /// Filter and late ticks together, s.
+    /// Filter and late ticks together, s. A sampled filter of a share `a` is late by `(1 - a) / a` ticks.
     pub fn lag_s(&self) -> f64 {
-        self.filter_s + self.late_ticks as f64 * self.tick_s()
+        let share = self.filter_share();
+        ((1.0 - share) / share + self.late_ticks as f64) * self.tick_s()
     }
 }
 

@@ -103,6 +103,21 @@ impl Motor {
         }
     }
 
+    /// What back-EMF and viscous friction brake with, (V s/rad)^2.
+    fn damping(&self) -> f64 {
+        self.constant.powi(2) + self.ohms * self.viscous
+    }
+
+    /// Speed per duty, friction aside, counts/s, on a supply that does not sag.
+    pub fn gain(&self) -> f64 {
+        self.volts * self.constant / self.damping() * self.counts_per_radian()
+    }
+
+    /// Time constant of the speed on such a supply, s.
+    pub fn tau_s(&self) -> f64 {
+        self.inertia * self.ohms / self.damping()
+    }
+
     fn counts_per_radian(&self) -> f64 {
         self.counts_per_turn / TAU
     }
