@@ -3,7 +3,6 @@
 use crate::cli::{
     DIFFERENT, DONE, LIMIT, NO_LINK, NOT_TAKEN, REFUSED, Run, Simulated, USAGE, name, program, run,
 };
-use brushwork_child::Program;
 use serde_json::Value;
 
 fn rover(addresses: &str) -> Simulated {
@@ -192,8 +191,12 @@ fn boards_of_a_rover_are_driven_together_on_one_line_and_on_two_or_not_at_all() 
     assert_eq!(each(&at_rest, "/result/readings/m1_pwm"), [0.0; 3]);
 }
 
+#[cfg(unix)]
 #[test]
 fn several_boards_are_watched_with_a_line_for_each_and_the_silent_one_is_named() {
+    use crate::cli::LIMIT;
+    use brushwork_child::Program;
+
     let line = rover("0x80-0x81");
     let mut command = program();
     command.args(["status", "--watch", "--interval", "0.2", "--json", "--address", "0x80-0x82"]);
