@@ -1,8 +1,6 @@
 //! Several controllers at once: one line with five RoboClaws of a rover, two lines, and a chain of Motion Minds.
 
-use crate::cli::{
-    DIFFERENT, DONE, LIMIT, NO_LINK, NOT_TAKEN, REFUSED, Run, Simulated, USAGE, name, program, run,
-};
+use crate::cli::{DIFFERENT, DONE, NO_LINK, NOT_TAKEN, REFUSED, Run, Simulated, USAGE, name, program, run};
 use serde_json::Value;
 
 fn rover(addresses: &str) -> Simulated {
