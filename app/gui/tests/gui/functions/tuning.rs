@@ -26,6 +26,8 @@ pub fn play(bench: &mut Bench, row: &Row, name: &str) {
 fn tune(bench: &mut Bench, row: &Row, which: Loop, motor: Motor) {
     let other = usize::from(motor == Motor::M1);
     let before = (bench.truth().axes[other].encoder_counts, settings(bench));
+    // How far the axis may go is asked for; that the button waits for it is tested with the guided run.
+    bench.model().front.tune.panel_mut(which, motor).setting.is_travel_chosen = true;
     arm(bench);
     bench.press(row.label);
     for _ in 0..60 {
