@@ -8,6 +8,12 @@ use super::{Loop, Run, TuneAction};
 use crate::command::{Command, Commands};
 use crate::model::{IndicatorState, Model, interruption};
 
+/// What to do where one method does not get on with a machine.
+const OTHER_METHOD: [&str; 2] = [
+    "Choose By fit: it needs no steady speed at two duties and no limit cycle.",
+    "Or try about another duty, and allow more of it.",
+];
+
 /// What to do, in the order in which it is best tried.
 #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
 fn steps(cause: Cause) -> &'static [&'static str] {
@@ -37,10 +43,7 @@ fn steps(cause: Cause) -> &'static [&'static str] {
         | Cause::StepUnclear
         | Cause::NoLimitCycle
         | Cause::RuleUnstable
-        | Cause::RuleLowered => &[
-            "Choose By fit: it needs no steady speed at two duties and no limit cycle.",
-            "Or try about another duty, and allow more of it.",
-        ],
+        | Cause::RuleLowered => &OTHER_METHOD,
         Cause::LineTooSlow { .. } => &[
             "Connect the controller by a cable: a radio, a network or an adapter that holds bytes back adds its latency to every reading.",
             "Or raise the baud rate.",
