@@ -13,11 +13,11 @@ use brushwork_tuning_bench::table::{Row, cases, table};
 /// Lowest and highest figure that is as usual.
 type Range = (f64, f64);
 
-/// Method, accepted %, good %, median cost.
+/// Method, accepted %, good %, median cost. Gains are designed for the longest lag that is still likely, which costs some speed.
 const BOUNDS: [(&str, Range, Range, Range); 4] = [
     ("velocity", (91.0, 100.0), (58.0, 80.0), (0.9, 1.45)),
-    ("pd", (95.0, 100.0), (58.0, 90.0), (0.9, 1.40)),
-    ("pid", (95.0, 100.0), (45.0, 75.0), (1.0, 1.70)),
+    ("pd", (95.0, 100.0), (58.0, 90.0), (0.9, 1.55)),
+    ("pid", (95.0, 100.0), (45.0, 75.0), (1.0, 1.75)),
     ("piv", (95.0, 100.0), (62.0, 92.0), (0.8, 1.35)),
 ];
 
@@ -41,7 +41,7 @@ fn twenty_four_plants_come_out_as_they_did() {
     assert!(found.qpps_error_p95 <= 1.0, "QPPS within 1 %: {}", found.qpps_error_p95);
     assert!(found.tau_error_p95 <= 6.0 && found.tau_error_p95 >= 1.5, "tau: {} %", found.tau_error_p95);
     assert!(found.gain_error_p95 <= 2.0, "gain: {} %", found.gain_error_p95);
-    assert!(found.lag_error_ms_p95 <= 5.0, "lag: {} ms", found.lag_error_ms_p95);
+    assert!(found.lag_error_ms_p95 <= 3.0, "lag: {} ms", found.lag_error_ms_p95);
     assert!(found.window_qpps_error_p95 <= 6.0, "QPPS inside a window: {} %", found.window_qpps_error_p95);
     assert!(found.window_reach_p95 <= 100.0, "the window is never left: {} %", found.window_reach_p95);
 }
