@@ -14,6 +14,7 @@ mod lexing;
 mod listed;
 pub mod mcl;
 pub mod mecc;
+pub mod names;
 pub mod op;
 pub mod program;
 pub mod text;

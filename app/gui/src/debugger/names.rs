@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use brushwork_script::debug::{Names, code_id};
+use brushwork_script::debug::code_id;
 use brushwork_script::language::Language;
+use brushwork_script::names::Names;
 use crossbeam_channel::{Receiver, TryRecvError, bounded};
 
 /// A text as it was at one moment: which program, and its revision.

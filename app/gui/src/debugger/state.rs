@@ -4,9 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use brushwork_plant::server::Pace;
-use brushwork_script::debug::{Breakpoint, Names, Reason, Request, Show, Value, View, Wanted, Watch};
+use brushwork_script::debug::{Breakpoint, Reason, Request, Show, Value, View, Wanted, Watch};
 use brushwork_script::language::Language;
 use brushwork_script::mcl::registers::RegisterId;
+use brushwork_script::names::Names;
 use brushwork_script::op::Op;
 use brushwork_script::program::Program;
 use brushwork_script::vm::{Memory, element};

@@ -3,11 +3,10 @@
 //!
 //! [`Debugger::run`] stands in place of [`Machine::run`]. While nobody debugs it is the same. A line is where a script stops: a step
 //! ends, and a breakpoint lies, before the first instruction of a line. What stands here knows no names: a downloaded image may have
-//! none. [`Names`] has them, and makes the [`Watch`]es and [`Setting`]s that are asked for here.
+//! none. [`crate::names::Names`] has them, and makes the [`Watch`]es and [`Setting`]s that are asked for here.
 
 mod breakpoint;
 mod lines;
-mod names;
 mod reason;
 mod shown;
 mod standing;
@@ -18,7 +17,6 @@ mod watch;
 
 pub use breakpoint::{Breakpoint, BreakpointState};
 pub use lines::{LineTable, code_id};
-pub use names::Names;
 pub use reason::{Reason, StepKind, StopCause, Wait};
 pub use shown::{Argument, Frame, Readings, View, Wanted};
 pub use terminal::{Chunk, Terminal};

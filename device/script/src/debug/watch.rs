@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// Instructions that an expression may take; it has no loops, so this is never reached by what the compiler made.
 const MOST: u32 = 100_000;
 
-/// An expression in the scope of a program. Made by [`super::Names::watch`].
+/// An expression in the scope of a program. Made by [`crate::names::Names::watch`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Watch {
     /// As it was typed.
@@ -22,7 +22,7 @@ pub struct Watch {
     pub(crate) array: Option<Array>,
 }
 
-/// A place with the value it is to get. Made by [`super::Names::setting`].
+/// A place with the value it is to get. Made by [`crate::names::Names::setting`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setting {
     /// The place, as it was typed.

@@ -1,6 +1,6 @@
 //! The names of a program, whatever its language: what a debugger needs of the text beside the instructions.
 
-use super::{Setting, Watch};
+use crate::debug::{Setting, Watch};
 use crate::language::Language;
 use crate::program::Program;
 use crate::{mcl, mecc};
