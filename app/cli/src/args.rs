@@ -1,5 +1,6 @@
 //! The command line as clap sees it. No behaviour here: each subcommand's own file acts on its arguments.
 
+use brushwork_core::addresses::{self, AddressList};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -12,7 +13,6 @@ use brushwork_plant::machine::StreamIndex;
 use brushwork_values::Motor;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use super::addresses::{self, AddressList};
 use super::examine::ExamineArgs;
 use super::examples;
 use super::family::families;

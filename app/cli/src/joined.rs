@@ -1,8 +1,8 @@
 //! Controllers that act together: of each line one link, with the units that are meant of it.
 
+use brushwork_core::addresses::{AddressList, in_words, name};
 use brushwork_link::{Identity, PollRate, Request};
 
-use super::addresses::{AddressList, in_words, name};
 use super::client::ask;
 use super::{Client, ConnectArgs, Exit, Interrupt};
 

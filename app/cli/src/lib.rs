@@ -52,7 +52,7 @@ use args::{Cli, Command, WindowArgs};
 pub use exit::Exit;
 pub use tool::Tool;
 
-pub use addresses::AddressList;
+pub use brushwork_core::addresses::AddressList;
 pub use client::Client;
 pub use family::{Family, Page, Simulated};
 pub use interrupt::Interrupt;

@@ -1,5 +1,6 @@
 //! Arguments that several commands have: which controller, on which line, for how long, and what a script finds on its buses.
 
+use brushwork_core::addresses::{self, AddressList};
 use std::time::Duration;
 
 use brushwork_link::FamilyChoice;
@@ -7,7 +8,7 @@ use brushwork_link::family::addresses_text;
 use brushwork_plant::world::{CanPeer, I2cDevice, WorldAction};
 use clap::{Args, ValueEnum};
 
-use super::addresses::{self, AddressList, Line};
+use super::addresses::Line;
 use super::examples;
 
 /// Which controllers, and how to reach them.

@@ -4,6 +4,7 @@
 //! there; then the units are found and each is asked to confirm.
 
 use crate::messages::{CliLinkMessage, CliStopMessage};
+use brushwork_core::addresses::in_words;
 use std::time::{Duration, Instant};
 
 use brushwork_link::device::{Addresses, DeviceHandle, Event, Identity, PollRate, StopReport};
@@ -11,7 +12,7 @@ use brushwork_link::transport::{ConnectTarget, OpenError};
 use brushwork_link::{FamilyChoice, Message, SystemClock};
 use serde_json::{Value, json};
 
-use super::addresses::{Line, in_words};
+use super::addresses::Line;
 use super::args::StopArgs;
 use super::client::{self, CONNECT_LIMIT};
 use super::{Exit, Interrupt, Output, OutputError, family, say};

@@ -3,6 +3,7 @@
 //! Each is found, asked and told by itself, so that one that is silent keeps nobody else from answering. What writes settings is done in two
 //! rounds: first every controller is read and its changes are shown, then, if all of them can take theirs, all are written.
 
+use brushwork_core::addresses::{AddressList, name};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -10,7 +11,7 @@ use brushwork_link::ConnectTarget;
 use clap::ArgMatches;
 use serde_json::{Value, json};
 
-use super::addresses::{AddressList, Line, name};
+use super::addresses::Line;
 use super::args::Command;
 use super::client;
 use super::messages::CliUnitsMessage;

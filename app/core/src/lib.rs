@@ -3,6 +3,8 @@
 
 #![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
 
+pub mod addresses;
+pub mod addressing;
 pub mod examine;
 pub mod guardian;
 pub mod keep;

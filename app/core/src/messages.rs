@@ -169,6 +169,33 @@ messages! {
 }
 
 messages! {
+    /// Why a unit is not given an address.
+    pub enum AddressMessage {
+        NobodyWaits { place: String } "No unit was found on {place} that waits for an address. Connect it, see that it has power, and try again.",
+        Taken { address: String, place: String } "{address} was not given to another unit: one answers there on {place} already. Give that one another address first.",
+        Garbled { unit: String } "Nothing was written: the replies of {unit} are garbled, as those of two units at one address are. Connect one alone; if they are garbled then too, look at the wiring, the ground and the baud rate.",
+        CannotHave { unit: String, address: String } "Nothing was written: {unit} cannot be given the address {address} over this line. In an R/C or analog mode it may have switches in its place.",
+    }
+}
+
+messages! {
+    /// What of a profile is not for all of several controllers.
+    pub enum ForAllMessage {
+        AddressKept { title: String } "Left out of the profile, since each of several controllers keeps its own: {title}.",
+    }
+}
+
+messages! {
+    /// What is said of numbers that are written raw.
+    pub enum RawMessage {
+        Warning "What this number means is not public: the controller may take it for anything, and a motor may move when something commands it. Take the load off, keep a hand on the power, and save it to EEPROM only when it does what you want.",
+        CutOffTaken { key: String, date: String, command: u8, wanted: i64, before: String } "The raw number {wanted} was written to {key} on {date}, by command {command} in place of {before}, and cut off before it was read back. The register holds it.",
+        CutOffNotTaken { key: String, date: String, command: u8, wanted: i64, before: String } "The raw number {wanted} was to be written to {key} on {date}, by command {command}, and that was cut off. The register holds {before} as before.",
+        CutOffOther { key: String, date: String, command: u8, wanted: i64, before: String, now: String } "The raw number {wanted} was written to {key} on {date}, by command {command} in place of {before}, and cut off before it was read back. The register holds {now} now.",
+    }
+}
+
+messages! {
     /// Why a unit is not examined.
     pub enum ExamineMessage {
         NoQuestions { unit: String } "There are no questions for a {unit} yet.",

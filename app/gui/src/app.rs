@@ -30,6 +30,7 @@ use super::{actions, keys, shell, theme};
 use crate::model::Afterwards;
 use crate::model::{Arming, Effect, Gravity, Owner, Screen, Section, Sheet, Tab};
 
+mod assistants;
 mod debugging;
 mod examining;
 mod files;
@@ -130,6 +131,7 @@ impl App {
         self.ask_debugger(&ctx);
         self.go_on_tuning();
         self.go_on_examining();
+        self.go_on_assisting();
         self.read_loops();
         self.read_for_screen();
         self.end_calibrations();
@@ -191,7 +193,9 @@ impl App {
         let (Some(device), Some(connection)) = (self.links.device(id), self.model.connection_mut(id)) else {
             return;
         };
-        let is_quiet = connection.link.arming == Arming::Disarmed && connection.is_connected();
+        let is_quiet = connection.link.arming == Arming::Disarmed
+            && connection.is_connected()
+            && !connection.is_turned_elsewhere();
         let keys = if is_quiet { connection.diagnosis_keys() } else { Vec::new() };
         if let Some(job) = connection.settings.read(&keys, true) {
             let job_id = job.id();
@@ -328,6 +332,12 @@ impl App {
             Command::Tune(action) => self.tune(action),
             Command::OpenExamination => model.front.examination.open = true,
             Command::Examination(action) => self.examine(action),
+            Command::OpenAddressing => self.open_addressing(),
+            Command::Addressing(action) => self.address(action),
+            Command::OpenToAll => self.open_to_all(),
+            Command::ToAll(action) => self.act_for_all(action),
+            Command::OpenRaw => self.open_raw(),
+            Command::WriteRaw(action) => self.raw(action),
             Command::OpenFirmware => {
                 if let Err(why) = self.open_firmware(None) {
                     self.model.messages.fail(why);
@@ -407,7 +417,7 @@ impl App {
     fn select_unit(&mut self, address: u8) {
         if !self.waits_for_run(self.model.front.id(), Afterwards::Select(address)) {
             self.disarm();
-            self.request(Request::Select(address));
+            self.turn_to_unit(self.model.front.id(), address);
         }
     }
 

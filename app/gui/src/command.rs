@@ -15,8 +15,11 @@ use super::family_action::FamilyAction;
 use super::graph::GraphAction;
 use super::mcl::MclAction;
 use super::model::ConnectionId;
+use super::model::addressing::AddressingAction;
 use super::model::examination::ExaminationAction;
 pub use super::model::guided::GuidedAction;
+use super::model::raw::RawAction;
+use super::model::to_all::ToAllAction;
 pub use super::tune::TuneAction;
 use crate::model::{Column, HelpPage, Screen, Section, SettingsAction, Sheet, Tab};
 
@@ -104,6 +107,15 @@ pub enum Command {
     /// Opens the window that examines the controller.
     OpenExamination,
     Examination(ExaminationAction),
+    /// Opens the assistant that gives boards their addresses.
+    OpenAddressing,
+    Addressing(AddressingAction),
+    /// Opens the window that gives one profile to every unit.
+    OpenToAll,
+    ToAll(ToAllAction),
+    /// Opens the page for numbers that are written raw.
+    OpenRaw,
+    WriteRaw(RawAction),
     /// Opens the window for connecting to a CANopen bus.
     OpenCanOpen,
     /// Starts a node of the CAN bus in front.

@@ -4,8 +4,8 @@
 //! presses nothing, so that Enter after a change of screen does nothing unwanted.
 
 use egui::{
-    Context, Event, FocusDirection, Id, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, TextStyle, Ui,
-    WidgetInfo, vec2,
+    Context, Event, FocusDirection, Id, Order, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind,
+    TextStyle, Ui, WidgetInfo, vec2,
 };
 
 use crate::theme::Palette;
@@ -24,11 +24,13 @@ pub enum Region {
     World,
     Traffic,
     Message,
+    /// A window above the screen that was opened last.
+    Dialog,
 }
 
 impl Region {
     /// In the order of F6.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Devices,
         Self::Screen,
         Self::Controls,
@@ -37,6 +39,7 @@ impl Region {
         Self::World,
         Self::Traffic,
         Self::Message,
+        Self::Dialog,
     ];
 }
 
@@ -91,7 +94,10 @@ pub fn go_on(ctx: &Context, forward: bool) {
     let now = frame(ctx);
     let focused = ctx.memory(egui::Memory::focused).and_then(|id| ctx.read_response(id));
     let there = with(ctx, |focus| focus.places).map(|place| place.filter(|(_, at)| at + 2 >= now));
-    let current = focused.and_then(|response| region_at(&there, response.rect.center()));
+    let current = focused.and_then(|response| match response.layer_id.order {
+        Order::Background => region_at(&there, response.rect.center()),
+        Order::Middle | Order::Foreground | Order::Tooltip | Order::Debug => Some(Region::Dialog),
+    });
     let places: Vec<Region> =
         Region::ALL.into_iter().filter(|region| there[*region as usize].is_some()).collect();
     let Some(first) = places.iter().find(|region| **region == Region::Screen).or(places.first()) else {
@@ -108,7 +114,8 @@ fn region_at(places: &[Option<(Pos2, u64)>; Region::ALL.len()], point: Pos2) -> 
     let begins = |region: &Region| places[*region as usize].map(|(place, _)| place);
     let is_before =
         |region: &Region| begins(region).is_some_and(|at| at.x <= point.x + 1.0 && at.y <= point.y + 1.0);
-    let found = Region::ALL.into_iter().filter(is_before);
+    // What is above all of them is found by its layer.
+    let found = Region::ALL.into_iter().filter(|region| *region != Region::Dialog).filter(is_before);
     // Columns first: what begins furthest to the right holds the point.
     found.max_by(|one, other| {
         let of = |region: &Region| begins(region).map_or((0.0, 0.0), |at| (at.x.round(), at.y));

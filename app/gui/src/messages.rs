@@ -36,6 +36,7 @@ messages! {
         NoFile "it is no file, but a folder, a device or a pipe",
         DiskIsBusy "the disk is busy",
         NoThread "the system gave no thread for it",
+        OtherUnit "another unit was chosen meanwhile",
         MoreUrgent "something more urgent came first",
         Said { text: String } "{text}",
     }
@@ -67,6 +68,89 @@ messages! {
         NotBegun "The settings of this controller are not known yet. Wait until they are read.",
         NoPath "Type where the report is to go: a path that ends in .json, or in anything else for text.",
         NotSaved { path: String, error: String } "The report could not be written to {path}: {error}. Choose another name.",
+    }
+}
+
+messages! {
+    /// What is said while boards are given their addresses.
+    pub enum AddressingMessage {
+        NoLine "Connect to the line first: to the port that the boards will share.",
+        NoList { why: String } "These are no addresses: {why}.",
+        NamedTwice "An address is named twice: each board gets its own.",
+        OfTwoFamilies "No family of controllers has all of these addresses: a line has controllers of one family.",
+        Busy "The controller in front is at work. Wait for it or cancel it.",
+        UnitAt { unit: String, place: String } "{unit} at {place}",
+        Searches "Looking who is on the line",
+        Meets "Looking for the board at its new address",
+        ShowsAll "Looking for all that have got one",
+        Listens "Listening whether one board alone answers",
+        Reads "Reading its settings",
+        Writes "Writing the address and reading it back",
+        Saves "Saving to EEPROM and proving it",
+        UnknownModel { unit: String } "The board at {unit} is no model that this program knows: it was not given an address.",
+        SeveralWait { units: String, place: String } "Several boards on {place} wait for an address, at {units}. Unplug all of them but one.",
+        HasOneAlready { unit: String, address: String } "This {unit} has {address} already. Plug in the next one.",
+        NotTaken { why: Sentences } "The address did not take. {why}",
+        NotMet { address: String } "The address was written and saved, but nobody answers at {address}. Switch the board off and on, then find it again.",
+        Has { unit: String, address: String } "The {unit} answers at {address}.",
+        OneHas "The board has its address.",
+        AllHave { boards: usize } "All {boards} boards have their addresses.",
+        Give { address: String } "Give It {address}",
+        WillGive { unit: String, address: String } "{unit} gets the address {address}: it is written, read back, and saved to EEPROM with all its settings. A backup is made first.",
+        PlugIn { address: String } "Plug in the board that is to have {address}. No other may be on the line that still waits for its address; those that have theirs may stay.",
+    }
+}
+
+messages! {
+    /// What is said of one profile for several units.
+    pub enum ToAllMessage {
+        Unit { unit: String, place: String, port: String } "{unit} at {place} on {port}",
+        NoProfile "No profile is open. Open one in General Settings.",
+        OpenOneFirst "Open the profile first; then press Write to All Units.",
+        GoesOn "It goes on already.",
+        NobodyChosen "No unit is ticked.",
+        OneCannot "Not all that are ticked can take the profile, so that nothing is written to any. Untick those that cannot.",
+        NotCompared "Not all that are ticked are compared yet.",
+        NothingDiffers "All that are ticked hold these values already.",
+        Compared "All are compared. Nothing was written yet.",
+        NotComparedToEnd "The comparison was cancelled. Nothing was written.",
+        Busy { unit: String } "{unit} is at work. Wait for it or cancel it.",
+        Differs "1 setting differs",
+        Differ { count: usize } "{count} settings differ",
+        Same "It holds these values already",
+        WriteToOne "Write to 1 Unit",
+        WriteTo { count: usize } "Write to {count} Units",
+        Gone "Its link is gone.",
+        HeldAlready "It held these values already.",
+        Written { settings: String } "{settings} written and read back.",
+        WrittenAndSaved { settings: String } "{settings} written, read back, and all settings saved to EEPROM.",
+        NotTaken { why: Sentences } "Not all of it took. {why}",
+        OneHasIt "The unit has the profile.",
+        AllHaveIt { of: usize } "All {of} units have the profile.",
+        SomeHaveIt { done: usize, of: usize } "{done} of {of} units have the profile. Each row says what became of it.",
+    }
+}
+
+messages! {
+    /// What is said on the page for raw numbers.
+    pub enum RawPageMessage {
+        Armed "Disarm first: nothing is written raw while anything is armed.",
+        Busy "Something else is at work with the controller. Wait for it or cancel it.",
+        NotConnected "Connect to a controller to write to it.",
+        NotReadYet "The settings are not read yet. Wait until they are.",
+        NoNumber { text: String } "\"{text}\" is no whole number: use for example 2 or 0x02.",
+        NothingToUndo "Nothing was written raw to this controller that could be undone.",
+        HeldAlready { key: String, raw: i64 } "The register of {key} holds {raw} already.",
+        CannotBe { why: Sentences } "The number is not written. {why}",
+        Holds { key: String, raw: i64 } "The register of {key} holds {raw}, as reading it back has shown. It is in RAM: save it only when it does what you want.",
+        HoldsOther { key: String, raw: i64 } "The number did not take: the register of {key} holds {raw}.",
+        NotReadBack { why: Sentences } "The number may be written and could not be read back. {why}",
+        Command { command: u8, field: String } "Command {command}, field {field}",
+        CommandOf { command: u8, field: String, index: u8 } "Command {command}, field {field}, of number {index}",
+        HoldsNow { raw: i64 } "The register holds {raw} now.",
+        Undo { key: String, raw: i64 } "Undo: {raw} for {key}",
+        Was { date: String, key: String, wanted: i64, before: String, found: String } "{date}  {key}: {wanted} in place of {before}, read back {found}",
+        WasCutOff { date: String, key: String, wanted: i64, before: String } "{date}  {key}: {wanted} in place of {before}, cut off before it was read back",
     }
 }
 
@@ -160,6 +244,7 @@ messages! {
     pub enum JobMessage {
         Panicked { act: Message, word: String } "Could not {act}: Brushwork had a bug. Its last word: {word}",
         CutShort { act: Message, cause: EndedMessage } "Did not {act} to the end: {cause}. The motors were stopped.",
+        LinkLost "The link was lost before it was done.",
         Played "The profile was played to its end. The motors were stopped.",
         QppsMeasured "QPPS was measured. The motors were stopped.",
         Downloaded { title: String, how: String } "Downloaded {title}: {how}",

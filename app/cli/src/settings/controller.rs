@@ -16,7 +16,8 @@ use brushwork_link::{
 use super::cut_short;
 use crate::work::{self, Moves};
 use crate::{Client, ConnectArgs, Exit, Interrupt, say};
-use brushwork_core::keep::{Keeping, Store, UnitId, profile_of};
+use brushwork_core::examine::RawWrite;
+use brushwork_core::keep::{Keeping, RawKeeper, Store, UnitId, profile_of};
 use brushwork_core::session::Simulation;
 use brushwork_core::settings::{Act, Done};
 
@@ -147,6 +148,19 @@ impl<'i> Controller<'i> {
         options: WriteOptions,
     ) -> Result<Finished<Result<Done, Failure>>, Exit> {
         self.run(name, act.limit(), act.work(table.clone(), options, self.keeper()))
+    }
+
+    /// The same for one number that is written raw, which is noted before it goes out.
+    pub fn act_raw(
+        &self,
+        name: impl Into<Message>,
+        act: Act,
+        table: &SettingsTable,
+        options: WriteOptions,
+        raw: RawWrite,
+    ) -> Result<Finished<Result<Done, Failure>>, Exit> {
+        let keeper = RawKeeper::boxed(self.keeper(), self.keeping.store().clone(), self.unit.clone(), raw);
+        self.run(name, act.limit(), act.work(table.clone(), options, keeper))
     }
 
     /// Runs work on the device thread and waits for its end. Ctrl-C cancels it; what it had to say by then

@@ -4,7 +4,9 @@ use crate::messages::CliSettingsMessage;
 use brushwork_link::settings::{Act, ReadReport};
 
 use crate::output::say;
-use brushwork_core::keep::{OpenJournal, Store, UnitId, aftermaths};
+use brushwork_core::examine::RawWrite;
+use brushwork_core::keep::{KeepError, OpenJournal, Store, UnitId, aftermaths};
+use brushwork_core::settings::raw::told_of_cut_off;
 
 /// More sentences than this are told by `unfinished` alone.
 const TOLD_IN_PASSING: usize = 30;
@@ -26,6 +28,17 @@ pub fn tell(unit: &UnitId, ram: &ReadReport) {
     if !journals.is_empty() {
         say(CliSettingsMessage::SeeUnfinished);
     }
+    tell_raw(unit, ram);
+}
+
+/// Says on standard error what the registers hold whose raw numbers were cut off before they were read back, once.
+pub fn tell_raw(unit: &UnitId, ram: &ReadReport) {
+    match told_of_cut_off(&Store::of_user(), unit, &ram.table, &ram.image) {
+        Ok(sentences) => sentences.into_iter().for_each(say),
+        // A user without a home has kept nothing.
+        Err(KeepError::NoFolder) => {}
+        Err(fault) => say(fault.to_string()),
+    }
 }
 
 /// Says on standard error that something which was begun on a unit did not end, for commands that do not read its settings.
@@ -38,6 +51,12 @@ pub fn announce(unit: &UnitId, port: &str) {
                 CliSettingsMessage::DidNotEnd { act: act.label(), begun, port }
             }
         });
+    }
+    // A list that cannot be read is told by whoever reads the settings.
+    let raw = Store::of_user().raw_writes(unit).unwrap_or_default();
+    for write in raw.into_iter().filter(|write| write.is_open) {
+        let RawWrite { key, date, wanted, .. } = write;
+        say(CliSettingsMessage::RawNotReadBack { key, date, wanted, port: port.to_owned() });
     }
 }
 

@@ -5,6 +5,7 @@ use serde_json::json;
 
 use super::args::UnfinishedArgs;
 use super::controller::Controller;
+use super::cut_short;
 use super::write::{self, Wanted};
 use crate::{Exit, Interrupt, Output, say};
 use brushwork_core::keep::{KeepError, OpenJournal, Store, aftermaths};
@@ -19,6 +20,7 @@ pub fn run(args: &UnfinishedArgs, out: &mut Output, interrupt: &Interrupt) -> Re
     damaged.iter().for_each(|fault| say(fault.to_string()));
     let aftermaths = aftermaths(&journals, &ram.table, &ram.image);
     show(args, &ram, &aftermaths, &damaged, out)?;
+    cut_short::tell_raw(&controller.unit, &ram);
     // The newest alone is finished or undone; the ones before it were overtaken by it.
     if args.forget {
         store.put_damaged_journals_aside(&damaged).map_err(|error| Exit::Failed.saying(error))?;

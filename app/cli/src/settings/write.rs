@@ -14,6 +14,8 @@ use super::review::{self, Review};
 use super::{ask, keys, memory, profile, read};
 use crate::messages::{CliActMessage, CliSettingsMessage};
 use crate::{Exit, Interrupt, Output, say};
+use brushwork_core::examine::RawWrite;
+use brushwork_core::settings::for_all::keep_addresses;
 use brushwork_core::settings::{Act, Done, counted, fitted, merged, write_options};
 
 /// Writes the changes given, and those of a profile.
@@ -43,6 +45,8 @@ pub struct Wanted {
     upgraded: Vec<Message>,
     /// Those of them that were read from a unit once, so that they are written as they are.
     taken: SettingsImage,
+    /// What is noted before they are, where they are one number that is written raw.
+    pub raw: Option<RawWrite>,
 }
 
 impl Wanted {
@@ -181,17 +185,14 @@ fn wanted(
     Ok(wanted)
 }
 
-/// Takes the address out of what a profile has for several controllers: with it all of them would answer at the same.
+/// Takes the address out of what a profile has for several controllers.
 fn keep_address(table: &SettingsTable, wanted: &mut Wanted) {
-    for row in table.subject().family().settings().address_keys().iter().filter_map(|key| table.row(key)) {
-        if wanted.changes.get(&row.key).is_some() {
-            let kept = Message::from(CliSettingsMessage::AddressKept { title: row.title() });
-            wanted.left_out_lines.push(kept.to_string());
-            wanted.left_out.push(kept);
-            wanted.changes.remove(&row.key);
-            wanted.taken.remove(&row.key);
-        }
+    for kept in keep_addresses(table, &mut wanted.changes) {
+        wanted.left_out_lines.push(kept.to_string());
+        wanted.left_out.push(kept);
     }
+    let addresses = table.subject().family().settings().address_keys();
+    addresses.iter().for_each(|key| wanted.taken.remove(key));
 }
 
 /// The changes whose keys begin with one of `starts`; all of them where there are none.
@@ -285,7 +286,11 @@ fn perform(
     let changes = wanted.changes.clone();
     if !changes.is_empty() {
         let act = Act::Write { wanted: changes, known: Known::default() };
-        let finished = controller.act(CliActMessage::WriteSettings, act, table, options)?;
+        let name = CliActMessage::WriteSettings;
+        let finished = match &wanted.raw {
+            Some(raw) => controller.act_raw(name, act, table, options, raw.clone())?,
+            None => controller.act(name, act, table, options)?,
+        };
         let refused = |why: &str| Err(finished.broken.unwrap_or(Exit::NotTaken).saying(why));
         let report = match finished.value {
             Ok(Done::Written(report, _)) => *report,

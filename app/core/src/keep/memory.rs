@@ -8,14 +8,10 @@ use serde::{Deserialize, Serialize};
 
 use super::store::{KeepError, Record, Store};
 use super::unit::{OWNER, UnitId};
-use crate::examine::RawWrite;
 use crate::messages::WearMessage;
 
 const EEPROM: &str = "eeprom";
 const WEAR: &str = "wear";
-const RAW: &str = "raw";
-/// As many raw writes as are remembered of a unit.
-const MOST_RAW_WRITES: usize = 200;
 
 /// Assumed: writes that each byte of the EEPROM stands. Makers of EEPROMs state 100 000, of flash that stands in for
 /// one 10 000; the controllers' manuals state nothing, so the lower figure counts.
@@ -78,12 +74,18 @@ impl Wear {
 
 impl Store {
     /// The file of what is known of a unit's memory.
-    fn memory_path(&self, kind: &str, unit: &UnitId) -> Result<PathBuf, KeepError> {
+    pub(super) fn memory_path(&self, kind: &str, unit: &UnitId) -> Result<PathBuf, KeepError> {
         self.path(&[kind, &format!("{}{}.json", unit.owner(), unit.file_name())])
     }
 
     /// Keeps something of a unit's memory, and forgets the memories of simulated units that are gone.
-    fn put_memory(&self, record: Record, kind: &str, unit: &UnitId, text: &str) -> Result<(), KeepError> {
+    pub(super) fn put_memory(
+        &self,
+        record: Record,
+        kind: &str,
+        unit: &UnitId,
+        text: &str,
+    ) -> Result<(), KeepError> {
         if unit.is_simulated {
             let is_gone = |path: &PathBuf| {
                 let name =
@@ -127,32 +129,6 @@ impl Store {
         let text = serde_json::to_string_pretty(&wear).unwrap_or_default();
         self.put_memory(Record::Wear, WEAR, unit, &text)?;
         Ok(wear)
-    }
-
-    /// The numbers that were written to the unit raw from this computer, oldest first.
-    ///
-    /// # Errors
-    /// Their file is damaged or cannot be read.
-    pub fn raw_writes(&self, unit: &UnitId) -> Result<Vec<RawWrite>, KeepError> {
-        Ok(self.json(Record::RawWrites, &self.memory_path(RAW, unit)?)?.unwrap_or_default())
-    }
-
-    /// Notes one more. A damaged file is put aside.
-    ///
-    /// # Errors
-    /// It cannot be kept.
-    pub fn note_raw_write(&self, unit: &UnitId, write: RawWrite) -> Result<(), KeepError> {
-        let mut writes = match self.raw_writes(unit) {
-            Err(KeepError::Damaged { record, path, .. }) => {
-                self.put_aside(record, &path)?;
-                Vec::new()
-            }
-            known => known?,
-        };
-        writes.push(write);
-        writes.drain(..writes.len().saturating_sub(MOST_RAW_WRITES));
-        let text = serde_json::to_string_pretty(&writes).unwrap_or_default();
-        self.put_memory(Record::RawWrites, RAW, unit, &text)
     }
 
     /// What the unit's EEPROM held when that was proven last, with the date.

@@ -2,6 +2,8 @@
 //! settles an act that was cut short, and each act with its backup, its journal, its name and its time limit.
 
 mod act;
+pub mod for_all;
+pub mod raw;
 
 pub use act::{Act, Done, counted};
 

@@ -31,6 +31,8 @@ pub(super) const ACTIONS: &[Action] = &[
         Keys::None, |model| has(model, Ability::Firmware, always), |_| Command::OpenFirmware),
     entry!(Device 2 "device.examine", "Examine This Controller…", "Finds out what the controller answers and how, for a report that you can send. It reads; whatever does more is asked for first.",
         Keys::None, connected, |_| Command::OpenExamination),
+    entry!(Device 2 "device.addresses", "Give Boards Their Addresses…", "Gives boards that are to share a line their addresses, one board at a time.",
+        Keys::None, has_line, |_| Command::OpenAddressing),
     entry!(Device 3 "device.read-settings", "Read Settings…", "Reads the controller's settings, from what it works with or from its EEPROM.",
         key(Key::F8), settings_idle, |_| Command::OpenSheet(Sheet::Read)),
     entry!(Device 3 "device.default-settings", "Default Settings…", "Restores the factory settings on the controller.",
@@ -75,6 +77,10 @@ pub(super) const ACTIONS: &[Action] = &[
         Keys::None, |model| has(model, Ability::SecondMotor, connected), |_| Command::ZeroEncoder(Motor::M2)),
     entry!(Device 5 "device.reset-estop", "Reset Emergency Stop (E-Stop)", "Ends an emergency stop where the controller lets software do so.",
         Keys::None, |model| has(model, Ability::EmergencyStop, connected), |_| Command::ResetEmergencyStop),
+    entry!(Device 5 "device.learn-anew", "Learn Its Commands Anew", "Forgets which commands this firmware has and lacks, here and on this computer, and asks for them again.",
+        Keys::None, disarmed, |_| Command::LearnAnew),
+    entry!(Device 5 "device.raw", "Raw Settings…", "Writes one number to a register whose meaning is not public, at your own risk, with a backup before and an undo after.",
+        Keys::None, connected, |_| Command::OpenRaw),
 ];
 
 /// What has to be so, unless the controller in front is of a family that lacks the thing altogether.
@@ -155,6 +161,19 @@ fn open_generator(model: &Model) -> Command {
 
 fn has_link(model: &Model) -> Ready {
     only(matches!(model.front.phase, Phase::Open { .. } | Phase::Opening { .. }), "No link is open.")
+}
+
+/// The line that boards are to share is open, or was.
+fn has_line(model: &Model) -> Ready {
+    only(model.front.target.is_some(), "Connect to the line first: to the port that the boards will share.")
+}
+
+fn disarmed(model: &Model) -> Ready {
+    connected(model)?;
+    only(
+        model.front.link.arming == Arming::Disarmed,
+        "Disarm first: what a controller answers is not learned while anything is armed.",
+    )
 }
 
 fn has_others(model: &Model) -> Ready {

@@ -16,6 +16,8 @@ pub(super) const ACTIONS: &[Action] = &[
         Keys::None, connected, |_| Command::OpenSheet(Sheet::SaveProfile)),
     entry!(File 2 "file.compare", "Compare Settings…", "Shows any two of RAM, EEPROM, profile, factory settings and backups side by side.",
         Keys::None, connected, |_| Command::OpenSheet(Sheet::Compare)),
+    entry!(File 2 "file.to-all", "Profile to All Units…", "Gives the open profile to every unit of the open links; what changes on each is shown first.",
+        Keys::None, connected, |_| Command::OpenToAll),
     entry!(File 2 "file.backups", "Backups…", "Lists what was kept before each write, save and firmware change, to be restored.",
         Keys::None, always, |model| with_or_without(model, Sheet::Backups, Command::ListBackups)),
     entry!(File 3 "file.exit", "Exit", "Stops all motors, disconnects, and closes the window.",

@@ -6,7 +6,7 @@ use brushwork_canopen::{NodeId, nmt};
 use brushwork_core::session::bus;
 use brushwork_link::Message;
 use brushwork_link::transport::TargetError;
-use brushwork_link::{ConnectTarget, Failure, PollRate, Request};
+use brushwork_link::{Addresses, ConnectTarget, Failure, PollRate, Request};
 use crossbeam_channel::{TryRecvError, bounded};
 use egui::Context;
 
@@ -49,10 +49,10 @@ impl App {
                 self.model.closed_too_many().into_iter().for_each(|connection| self.forget(connection));
             }
         }
-        self.open_front(target);
+        self.open_front(target, self.model.devices.addresses());
     }
 
-    fn open_front(&mut self, target: ConnectTarget) {
+    pub(super) fn open_front(&mut self, target: ConnectTarget, addresses: Addresses) {
         let text = target.to_string();
         let front = &mut self.model.front;
         front.target = Some(text.clone());
@@ -64,7 +64,7 @@ impl App {
             front.shows_start = false;
             self.model.files.close();
             front.phase = Phase::Opening { target: text };
-            let opening = self.parts.opener.open(target, self.model.devices.addresses());
+            let opening = self.parts.opener.open(target, addresses);
             self.links.entry(front.id()).opening = Some(opening);
         }
         self.model.devices.choose_connection(&self.model.front);

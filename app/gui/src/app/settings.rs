@@ -16,6 +16,10 @@ impl App {
 
     pub(super) fn settings_of(&mut self, id: ConnectionId, action: SettingsAction) {
         let Some(connection) = self.model.connection_mut(id) else { return };
+        // What is to be read is asked for again when the unit is there to stay.
+        if action == SettingsAction::Read && connection.is_turned_elsewhere() {
+            return;
+        }
         if connection.tune.is_running() && !matches!(action, SettingsAction::Cancel | SettingsAction::Read) {
             connection.tune.waiting = Some(action);
             self.model.messages.note(WindowStatusMessage::WaitsForRun);
@@ -88,7 +92,8 @@ impl App {
     /// Reads what the screen in front shows of the settings, as far as it is not known or in doubt.
     pub(super) fn read_loops(&mut self) {
         let front = &mut self.model.front;
-        let has_loops = self.model.screen.has_loops() && front.family().has_loops() && front.is_connected();
+        let is_here = front.is_connected() && !front.is_turned_elsewhere();
+        let has_loops = self.model.screen.has_loops() && front.family().has_loops() && is_here;
         let keys = front.settings.unit().filter(|_| has_loops).map(UnitSettings::loop_keys);
         if let Some(job) = keys.and_then(|keys| front.settings.read(&keys, false))
             && !self.start_for(self.model.front.id(), Owner::Settings, job)

@@ -19,12 +19,14 @@ use brushwork_values::Motor;
 
 use super::afterwards::Afterwards;
 use super::drawer::Drawers;
+use super::errand::Errand;
 use super::examination::ExaminationPanel;
 use super::generator::Generator;
 use super::jobs::Jobs;
 use super::loop_settings::LoopView;
 use super::path::Path;
 use super::qpps::QppsPanel;
+use super::raw::RawPage;
 use super::script::ScriptWork;
 use super::traffic::Traffic;
 use super::watch::Watch;
@@ -81,6 +83,14 @@ pub struct Connection {
     pub afterwards: Option<Afterwards>,
     /// The examination of the unit that is looked at.
     pub examination: ExaminationPanel,
+    /// What an assistant has done on this link.
+    pub errand: Errand,
+    /// Whether an assistant goes from one of its units to the next.
+    pub is_assisted: bool,
+    /// The unit that was asked for and is not shown yet: what is read meanwhile would be taken for the other one's.
+    pub turning_to: Option<u8>,
+    /// The page for numbers that are written raw.
+    pub raw: RawPage,
     /// How far the unit is on the guided path.
     pub path: Path,
     /// What the screens that drive have open above their graphs.
@@ -193,6 +203,10 @@ impl Connection {
             tune: Tuning::default(),
             afterwards: None,
             examination: ExaminationPanel::default(),
+            errand: Errand::default(),
+            is_assisted: false,
+            turning_to: None,
+            raw: RawPage::default(),
             path: Path::default(),
             drawers: Drawers::default(),
             loops: LoopView::default(),
@@ -296,8 +310,14 @@ impl Connection {
             && !self.general.holds_settings()
             && self.diagnosis_keys().is_empty()
             && !self.is_guided()
+            && !self.is_turned_elsewhere()
             && self.tune.running().is_none()
             && !self.own.iter().any(|own| own.is_busy())
+    }
+
+    /// Whether what is read now may come from another unit than the one that is shown.
+    pub fn is_turned_elsewhere(&self) -> bool {
+        self.turning_to.is_some() || self.is_assisted || self.errand.is_running()
     }
 
     /// The sliders of every screen go back to rest, with nothing left to send.
@@ -329,6 +349,9 @@ impl Connection {
         let changes_ram = self.changes_ram(&event);
         if matches!(&event, Event::Stopped(report) if report.from_outside) {
             self.tune.abort(EndedMessage::Stopped);
+        }
+        if matches!(&event, Event::Selected { address, .. } if self.turning_to == Some(*address)) {
+            self.turning_to = None;
         }
         self.history.note(&event);
         self.traffic.note(&event);
@@ -424,6 +447,14 @@ impl Connection {
                     self.settings.doubt();
                 }
                 self.script.take(event)
+            }
+            Owner::Errand => {
+                if matches!(event, Event::JobEnded(_)) {
+                    // It may have written settings.
+                    self.settings.doubt();
+                }
+                self.errand.take(event);
+                Vec::new()
             }
             Owner::Tune => self.take_tuning(event),
             Owner::Examination => {
@@ -543,6 +574,8 @@ impl Connection {
     pub fn link_ended(&mut self) -> Vec<Effect> {
         let mut effects = self.tune.link_ended();
         effects.extend(self.examination.link_ended());
+        self.errand.link_ended();
+        self.turning_to = None;
         self.phase = Phase::Closed;
         self.jobs = Jobs::default();
         self.lost = std::mem::take(&mut self.link).lost_because.map(|text| Lost { text, noticed_s: None });

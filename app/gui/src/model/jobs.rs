@@ -18,6 +18,8 @@ pub enum Owner {
     Tune,
     /// The examination of a controller.
     Examination,
+    /// An assistant, whose act the link has at the moment.
+    Errand,
 }
 
 /// The jobs that were asked for and have not ended.

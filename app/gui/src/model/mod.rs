@@ -5,6 +5,7 @@ use egui::ThemePreference;
 
 use super::mcl::Editor;
 
+pub mod addressing;
 mod afterwards;
 pub mod boards;
 pub mod canopen;
@@ -12,6 +13,7 @@ pub mod channels;
 pub mod connection;
 pub mod devices;
 pub mod drawer;
+pub mod errand;
 pub mod examination;
 pub mod general;
 pub mod generator;
@@ -32,12 +34,15 @@ mod path_steps;
 pub mod position;
 pub mod pwm;
 pub mod qpps;
+pub mod raw;
+mod raw_wanted;
 pub mod readings;
 pub mod screen;
 pub mod script;
 pub mod setpoints;
 pub mod settings;
 pub mod simulated;
+pub mod to_all;
 pub mod traffic;
 pub mod velocity;
 pub mod watch;
@@ -91,6 +96,10 @@ pub struct Model {
     pub files: open_files::OpenFiles,
     /// The window for connecting to a CANopen bus.
     pub canopen: canopen::CanOpenChoice,
+    /// The assistant that gives boards their addresses.
+    pub addressing: addressing::Addressing,
+    /// One profile for every unit of the open links.
+    pub to_all: to_all::ToAll,
     /// The MCL programs that are open; they belong to no link.
     pub mcl: Editor,
     /// The link that is looked at. Only this one can be armed.

@@ -8,7 +8,9 @@ use super::mcl;
 use super::model::screen::Screen;
 use super::model::{Model, Phase};
 
+pub mod addressing;
 pub mod canopen;
+pub(super) mod dialog;
 mod direction;
 mod drawer;
 pub(super) mod drive;
@@ -23,11 +25,13 @@ mod position;
 mod progress;
 mod pwm;
 mod qpps;
+pub mod raw;
 mod settings_file;
 mod split;
 mod start;
 pub(super) mod status;
 pub mod stream;
+pub mod to_all;
 mod velocity;
 
 /// The screen that is open, as the family of the controller in front draws it.

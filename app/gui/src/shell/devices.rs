@@ -11,9 +11,7 @@ use egui::containers::menu::MenuButton;
 use crate::command::{Command, Commands};
 use crate::family::{self, Family};
 use crate::model::devices::{BAUD_RATES, Choice, Devices, described};
-use crate::model::{
-    Arming, Connection, ConnectionId, IndicatorState, LinkView, Model, Phase, Simulated, place_of,
-};
+use crate::model::{Arming, Connection, ConnectionId, IndicatorState, Model, Phase, Simulated, place_of};
 use crate::screens::face;
 use crate::theme::Palette;
 use crate::widgets::{choice_ui, heading_ui, text_field_ui};
@@ -384,29 +382,50 @@ fn connect_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     }
 }
 
-/// The units of a bus, when there are several.
+/// Every unit that is connected, when there are several: those of the link in front, then those of the others.
 fn units_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
-    if model.front.link.units.len() < 2 {
+    let front = &model.front;
+    let mut others: Vec<&Connection> =
+        model.others.iter().filter(|connection| connection.is_connected()).collect();
+    others.sort_by_key(|connection| connection.id());
+    let has_own = front.is_connected() && (front.link.units.len() > 1 || !others.is_empty());
+    if !has_own && others.is_empty() {
         return;
     }
-    heading_ui(ui, "Units on this link");
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing.y = 1.0;
-        for unit in &model.front.link.units {
-            board_ui(ui, &model.front.link, unit, commands);
+        if has_own {
+            heading_ui(ui, "Units on this link");
+            for unit in &front.link.units {
+                board_ui(ui, front, unit, true, commands);
+            }
+        }
+        for connection in others {
+            heading_ui(ui, connection.phase.target().unwrap_or_default());
+            for unit in &connection.link.units {
+                board_ui(ui, connection, unit, false, commands);
+            }
         }
     });
 }
 
 /// One unit of several, in two lines, so that five of them leave room for the screens: who it is, then how it is.
-fn board_ui(ui: &mut Ui, link: &LinkView, unit: &Identity, commands: &mut Commands) {
+fn board_ui(ui: &mut Ui, connection: &Connection, unit: &Identity, in_front: bool, commands: &mut Commands) {
+    let link = &connection.link;
     let (state, said) = link.boards.state(unit.address);
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
         state.paint(ui, rect.center(), 4.0);
         let selected = link.selected == Some(unit.address);
-        if ui.selectable_label(selected, unit_text(unit)).clicked() && !selected {
-            commands.push(Command::SelectUnit(unit.address));
+        let label = ui.selectable_label(in_front && selected, unit_text(unit));
+        if !in_front {
+            // Boards of two links may have one address.
+            let name = format!("{} on {}", unit_text(unit), unit.port);
+            label.widget_info(|| WidgetInfo::selected(Role::Button, true, false, &name));
+        }
+        if label.clicked() {
+            commands.extend((!in_front).then(|| Command::Front(connection.id())));
+            commands.extend((!selected).then_some(Command::SelectUnit(unit.address)));
         }
     });
     let figures = link.boards.figures(unit.address);

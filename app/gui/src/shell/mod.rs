@@ -61,6 +61,9 @@ pub fn shell_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     screens::face::all().for_each(|face| face.windows_ui(ui.ctx(), model, commands, room));
     screens::canopen::canopen_ui(ui.ctx(), model, commands, room);
     screens::examination::examination_ui(ui.ctx(), model, commands, room);
+    screens::addressing::addressing_ui(ui.ctx(), model, commands, room);
+    screens::to_all::to_all_ui(ui.ctx(), model, commands, room);
+    screens::raw::raw_ui(ui.ctx(), model, commands, room);
     screens::graph_place::detached_ui(ui.ctx(), model, commands);
     palette::palette_ui(ui.ctx(), model, commands);
     drop::drop_ui(ui.ctx());

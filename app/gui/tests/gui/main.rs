@@ -25,6 +25,7 @@ mod pins;
 mod position;
 mod qpps;
 mod recipes;
+mod rover;
 mod safety;
 mod scripts;
 mod settings_state;

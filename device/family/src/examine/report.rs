@@ -61,6 +61,9 @@ pub struct RawWrite {
     pub wanted: i64,
     /// What was read back.
     pub found: Option<i64>,
+    /// It was begun, and is not known to have come to its end.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_open: bool,
 }
 
 /// Who a unit is.

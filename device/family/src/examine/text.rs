@@ -47,8 +47,10 @@ impl Examination {
                 let RawWrite { date, key, command, field, wanted, .. } = write;
                 let of = write.index.map_or_else(String::new, |index| format!(" of number {index}"));
                 let (before, found) = (number(write.before), number(write.found));
+                let end = if write.is_open { "cut off before it was read back" } else { "read back" };
+                let found = if write.is_open { String::new() } else { format!(" {found}") };
                 let line = format!(
-                    "- {date} {key}: {wanted} in place of {before} by command {command}, {field}{of}; read back {found}"
+                    "- {date} {key}: {wanted} in place of {before} by command {command}, {field}{of}; {end}{found}"
                 );
                 push(&mut text, &line, "  ");
             }

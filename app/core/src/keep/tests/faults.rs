@@ -35,6 +35,7 @@ fn raw_write(wanted: i64) -> RawWrite {
         before: None,
         wanted,
         found: None,
+        is_open: false,
     }
 }
 

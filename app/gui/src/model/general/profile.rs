@@ -4,7 +4,7 @@
 //! other.
 
 use brushwork_link::Message;
-use brushwork_link::settings::{Problem, Profile, ProfileFileError};
+use brushwork_link::settings::{OpenedProfile, Problem, Profile, ProfileFileError};
 
 use crate::files::{FileAction, FileAnswer, FileDialog, FileKind};
 
@@ -52,6 +52,8 @@ pub enum Reported {
 pub struct Opened {
     pub name: String,
     pub profile: Profile,
+    /// The same as it was read, for units of other models and firmwares.
+    pub read: OpenedProfile,
     /// What was corrected or left out in reading it.
     pub corrected: Vec<Problem>,
 }

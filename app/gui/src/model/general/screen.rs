@@ -1,5 +1,7 @@
 //! What General Settings shows and searches, which sheet is open, and what is compared or calibrated there.
 
+use brushwork_link::settings::OpenedProfile;
+
 use super::calibrate;
 use super::clamp::ClampTest;
 use super::compare::Comparing;
@@ -54,6 +56,11 @@ impl General {
         self.forget_clamp_test();
         self.explained = None;
         self.sheet = None;
+    }
+
+    /// The open profile as it was read, and its name.
+    pub fn opened_profile(&self) -> Option<(String, OpenedProfile)> {
+        self.profiles.opened.as_ref().map(|opened| (opened.name.clone(), opened.read.clone()))
     }
 
     pub fn close_sheet(&mut self) {

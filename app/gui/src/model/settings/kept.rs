@@ -34,6 +34,8 @@ pub(super) struct Kept {
     wear_fault: Option<Message>,
     /// Journals that cannot be read.
     damaged: Vec<Arc<KeepError>>,
+    /// Whether it was looked what became of numbers that were written raw and not read back.
+    cut_off_is_told: bool,
     /// What could not be kept or read, to be said once.
     untold: Vec<Message>,
 }
@@ -125,6 +127,7 @@ impl Kept {
         self.unit = None;
         self.unfinished.clear();
         self.damaged.clear();
+        self.cut_off_is_told = false;
         self.backups.clear();
         self.eeprom = None;
     }

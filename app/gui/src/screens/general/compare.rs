@@ -36,7 +36,11 @@ pub fn compare_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
     if let Some(take) = taken {
         general.take_over(&take);
     }
-    vec![("Take over all", Act::TakeOverAll, comparison.count() > 0)]
+    let has_profile = general.profiles.opened.is_some();
+    vec![
+        ("Take over all", Act::TakeOverAll, comparison.count() > 0),
+        ("Write to All Units…", Act::ToAll, has_profile),
+    ]
 }
 
 fn sides_ui(ui: &mut Ui, general: &mut GeneralView<'_>) {

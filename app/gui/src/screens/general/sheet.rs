@@ -94,6 +94,7 @@ fn buttons_ui(ui: &mut Ui, general: &mut GeneralView<'_>, offers: &[Offer], comm
             general.take_over(&Take::All);
             close = true;
         }
+        Some(Act::ToAll) => commands.push(Command::OpenToAll),
         Some(Act::UseUpgraded) => general.use_upgraded(),
         Some(Act::CopyMotor) => {
             general.copy_motor();

@@ -10,9 +10,13 @@ use crate::model::{IndicatorState, SettingsAction, Settle, UnitSettings};
 #[derive(Clone, Copy, Debug)]
 pub enum Act {
     FamilyAction(SettingsAction),
-    OpenProfile { mending: bool },
+    OpenProfile {
+        mending: bool,
+    },
     SaveProfile,
     TakeOverAll,
+    /// Opens the window that gives the open profile to every unit.
+    ToAll,
     UseUpgraded,
     CopyMotor,
     Settle(Settle),

@@ -61,14 +61,15 @@ pub fn unit_ui(ui: &mut Ui, connection: &Connection, commands: &mut Commands) {
     if let Some(lacking) = connection.link.lacking() {
         ui.add_space(4.0);
         ui.add(Label::new(format!("This firmware does not have: {lacking}.")).wrap());
-        let is_armed = matches!(connection.link.arming, Arming::Armed { .. });
-        let button = ui.add_enabled(!is_armed, Button::new("Learn Anew"));
-        let button = button.on_hover_text(
-            "Forgets which commands this firmware lacks, here and on this computer, and asks for them again.",
-        );
-        if button.clicked() {
-            commands.push(Command::LearnAnew);
-        }
+    }
+    // Also where it is held for complete, which may be as wrong.
+    let is_armed = matches!(connection.link.arming, Arming::Armed { .. });
+    let button = ui.add_enabled(!is_armed, Button::new("Learn Anew"));
+    let button = button.on_hover_text(
+        "Forgets which commands this firmware has and lacks, here and on this computer, and asks for them again.",
+    );
+    if button.clicked() {
+        commands.push(Command::LearnAnew);
     }
 }
 

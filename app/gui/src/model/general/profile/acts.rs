@@ -64,8 +64,8 @@ impl GeneralView<'_> {
     fn take_profile(&mut self, name: String, read: OpenedProfile) {
         let Some(unit) = self.unit() else { return };
         let corrected = read.corrected.clone();
-        let (profile, changes) = fitted(read, unit.table());
-        let opened = Opened { name, profile, corrected };
+        let (profile, changes) = fitted(read.clone(), unit.table());
+        let opened = Opened { name, profile, read, corrected };
         self.profiles.reported = Reported::Nothing;
         if changes.is_empty() {
             self.show_opened(opened);

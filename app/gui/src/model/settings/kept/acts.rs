@@ -10,6 +10,7 @@ use crate::messages::PathMessage;
 use crate::model::settings::unit_key::UnitKey;
 use crate::model::settings::units::Settings;
 use brushwork_core::keep::{Backup, Keeping, UnitId, Wear, aftermaths};
+use brushwork_core::settings::raw::told_of_cut_off;
 
 impl Settings {
     /// Where backups and journals go from now on; the ports tell serial numbers.
@@ -35,6 +36,7 @@ impl Settings {
         let unit = UnitId::new(identity, &kept.ports);
         kept.units.insert(key, unit.clone());
         kept.unit = Some(unit.clone());
+        kept.cut_off_is_told = false;
         let Some(keeping) = kept.keeping.clone() else { return };
         let (unfinished, damaged) = keeping.store().open_journals(&unit);
         kept.unfinished = unfinished;
@@ -71,6 +73,21 @@ impl Settings {
         let ended = self.kept.keeping.as_ref().map(Keeping::take_faults).unwrap_or_default();
         self.kept.untold.extend(ended.into_iter().map(Message::error));
         std::mem::take(&mut self.kept.untold)
+    }
+
+    /// Numbers that were written raw and cut off before they were read back, a sentence each, once the settings are read.
+    pub fn take_cut_off(&mut self) -> Vec<Message> {
+        if self.kept.cut_off_is_told {
+            return Vec::new();
+        }
+        let read = self.unit().and_then(|unit| Some((unit.table().clone(), unit.ram()?.clone())));
+        let (Some((table, ram)), Some(unit), Some(keeping)) = (read, &self.kept.unit, &self.kept.keeping)
+        else {
+            return Vec::new();
+        };
+        let told = told_of_cut_off(keeping.store(), unit, &table, &ram);
+        self.kept.cut_off_is_told = true;
+        self.kept.told(told).unwrap_or_default()
     }
 
     /// Journals of the unit that cannot be read, each in a sentence.
