@@ -95,8 +95,9 @@ messages! {
         Has { unit: String, address: String } "The {unit} answers at {address}.",
         OneHas "The board has its address.",
         AllHave { boards: usize } "All {boards} boards have their addresses.",
-        Give { address: String } "Give It {address}",
+        Give { address: String } "Give it {address}",
         WillGive { unit: String, address: String } "{unit} gets the address {address}: it is written, read back, and saved to EEPROM with all its settings. A backup is made first.",
+        WillStay { unit: String, address: String } "{unit} stays at {address}: all its settings are saved to EEPROM. A backup is made first.",
         PlugIn { address: String } "Plug in the board that is to have {address}. No other may be on the line that still waits for its address; those that have theirs may stay.",
     }
 }
@@ -106,7 +107,7 @@ messages! {
     pub enum ToAllMessage {
         Unit { unit: String, place: String, port: String } "{unit} at {place} on {port}",
         NoProfile "No profile is open. Open one in General Settings.",
-        OpenOneFirst "Open the profile first; then press Write to All Units.",
+        OpenOneFirst "Open the profile first; then press Write to all units.",
         GoesOn "It goes on already.",
         NobodyChosen "No unit is ticked.",
         OneCannot "Not all that are ticked can take the profile, so that nothing is written to any. Untick those that cannot.",
@@ -118,8 +119,8 @@ messages! {
         Differs "1 setting differs",
         Differ { count: usize } "{count} settings differ",
         Same "It holds these values already",
-        WriteToOne "Write to 1 Unit",
-        WriteTo { count: usize } "Write to {count} Units",
+        WriteToOne "Write to 1 unit",
+        WriteTo { count: usize } "Write to {count} units",
         Gone "Its link is gone.",
         HeldAlready "It held these values already.",
         Written { settings: String } "{settings} written and read back.",

@@ -386,6 +386,58 @@ fn without_a_display_the_program_names_the_command_line() {
     assert_reported(&run(&["--open", "sim:mcp266", "status"]), USAGE, &["--open"]);
 }
 
+/// It is killed while everything is read back, which takes a line of this rate more than a second.
+#[test]
+fn a_raw_number_whose_program_is_killed_before_it_is_read_back_is_named_by_the_next_command() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut sim = start(&[
+        "sim",
+        "--tcp",
+        "127.0.0.1:0",
+        "--port",
+        "ttl1",
+        "--pace",
+        "--baud",
+        "19200",
+        "--generation",
+        "4",
+    ]);
+    let greeting = sim.wait_for("Connect with", LIMIT);
+    let place = greeting.rsplit("tcp:").next().unwrap_or_default().trim();
+    let port = format!("tcp:{},stream=ttl1", place.split(',').next().unwrap_or_default());
+    let brushwork = |arguments: &[&str]| {
+        let mut command = Command::new(BRUSHWORK);
+        command.args(arguments).args(["-c", &port]).env("BRUSHWORK_DATA_DIR", folder.path());
+        Program::spawn(command)
+    };
+    let noted = || {
+        let files = std::fs::read_dir(folder.path().join("raw")).ok()?;
+        let text = std::fs::read_to_string(files.flatten().next()?.path()).ok()?;
+        serde_json::from_str::<Value>(&text).ok()
+    };
+    let writing = brushwork(&["settings", "raw", "motor1.encoder.pin=2", "--own-risk"]);
+    let begun = wait::until_some("the number is noted", noted, || "it is not".to_owned());
+    writing.signal("KILL");
+    writing.finish(LIMIT);
+    assert_eq!((&begun[0]["wanted"], &begun[0]["is_open"]), (&2.into(), &true.into()), "{begun}");
+    assert_eq!(noted().expect("it is kept")[0]["found"], Value::Null, "it was killed in time");
+
+    let status = brushwork(&["status"]).finish(LIMIT).stderr.join("\n");
+    assert!(
+        status.contains("The raw number 2 was written to motor1.encoder.pin")
+            && status.contains("not read back"),
+        "{status}"
+    );
+    let key = ["settings", "read", "motor1.encoder.pin"];
+    let read = brushwork(&key).finish(LIMIT).stderr.join("\n");
+    assert!(read.contains("The raw number 2 w") && read.contains("command 92"), "{read}");
+    assert_eq!(noted().expect("it is kept")[0].get("is_open"), None, "what became of it is known now");
+    assert!(
+        !brushwork(&key).finish(LIMIT).stderr.join("\n").contains("The raw number 2 w"),
+        "once is enough"
+    );
+}
+
 /// As a real controller over a port: what is only guessed is refused there.
 #[test]
 fn a_raw_number_is_written_at_the_owners_word_read_back_undone_and_reported() {

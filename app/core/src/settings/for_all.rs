@@ -17,8 +17,10 @@ pub struct Share {
     pub options: WriteOptions,
     /// What changes, in screen order.
     pub differences: Vec<Difference>,
-    /// What had to be changed of the profile, what is left out of it, and what is to be known before, a sentence each.
+    /// What had to be changed of the profile and what is left out of it, a sentence each.
     pub notes: Vec<Message>,
+    /// What is to be known before it is written.
+    pub warnings: Vec<Message>,
 }
 
 impl Share {
@@ -43,9 +45,9 @@ impl Share {
             refusals.into_iter().map(|refusal| refusal.sentence).collect()
         };
         let options = write_options(table, image, &changes, |_, _| true, options).map_err(sentences)?;
-        notes.extend(plan(table, image, &changes, options).map_err(sentences)?.warnings);
+        let warnings = plan(table, image, &changes, options).map_err(sentences)?.warnings;
         let differences = diff(table, image, &merged(image, &changes));
-        Ok(Self { table: table.clone(), changes, options, differences, notes })
+        Ok(Self { table: table.clone(), changes, options, differences, notes, warnings })
     }
 }
 

@@ -127,8 +127,8 @@ pub struct Addressing {
 pub enum Step {
     /// The next board is to be plugged in for this address.
     PlugIn(u8),
-    /// This board is to have this address: what it is, and where.
-    Give { unit: String, number: u8 },
+    /// This board is to have this address: what it is, and where, and whether it is there already.
+    Give { unit: String, number: u8, stays: bool },
     /// Something goes on by itself.
     Works(Message),
 }
@@ -182,7 +182,8 @@ impl Addressing {
             Stage::Waiting => Step::PlugIn(number?),
             Stage::Asking { unit, .. } => {
                 let at = AddressingMessage::UnitAt { unit: unit.title().to_owned(), place: unit.place() };
-                Step::Give { unit: Message::from(at).to_string(), number: number? }
+                let number = number?;
+                Step::Give { unit: Message::from(at).to_string(), number, stays: unit.address == number }
             }
             Stage::Searching { search: Search::Next, .. } => Step::Works(AddressingMessage::Searches.into()),
             Stage::Searching { search: Search::Again, .. } => Step::Works(AddressingMessage::Meets.into()),

@@ -56,11 +56,15 @@ fn contents_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     match model.addressing.step() {
         Some(Step::PlugIn(number)) => {
             weak_ui(ui, &Message::from(AddressingMessage::PlugIn { address: name(number) }).to_string());
-            button_ui(ui, "Find the Board", AddressingAction::Find, commands);
+            button_ui(ui, "Find the board", AddressingAction::Find, commands);
         }
-        Some(Step::Give { unit, number }) => {
+        Some(Step::Give { unit, number, stays }) => {
             let address = name(number);
-            let will = AddressingMessage::WillGive { unit, address: address.clone() };
+            let place = address.clone();
+            let will = match stays {
+                true => AddressingMessage::WillStay { unit, address: place },
+                false => AddressingMessage::WillGive { unit, address: place },
+            };
             ui.add(egui::Label::new(Message::from(will).to_string()).wrap());
             let text = Message::from(AddressingMessage::Give { address }).to_string();
             button_ui(ui, &text, AddressingAction::Give, commands);

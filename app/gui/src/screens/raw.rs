@@ -78,7 +78,7 @@ fn contents_ui(ui: &mut Ui, front: &mut Connection, commands: &mut Commands) {
     let can_write = page.is_agreed && !is_running && !page.typed.trim().is_empty();
     ui.horizontal(|ui| {
         let size = vec2(140.0, 30.0);
-        if ui.add_enabled(can_write, Button::new("Write This Number").min_size(size)).clicked() {
+        if ui.add_enabled(can_write, Button::new("Write this number").min_size(size)).clicked() {
             commands.push(Command::WriteRaw(RawAction::Write));
         }
         if is_running {

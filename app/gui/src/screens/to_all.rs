@@ -9,7 +9,6 @@ use crate::command::{Command, Commands};
 use crate::messages::ToAllMessage;
 use crate::model::to_all::{State, Target, ToAll, ToAllAction};
 use crate::model::{Gravity, IndicatorState, Model};
-use crate::theme::Palette;
 
 /// Draws the window, if it is open, within `room`.
 pub fn to_all_ui(ctx: &Context, model: &mut Model, commands: &mut Commands, room: Rect) {
@@ -51,7 +50,7 @@ fn contents_ui(ui: &mut Ui, to_all: &mut ToAll, commands: &mut Commands) {
         }
         let (text, action) = match to_all.is_running() {
             true => ("Cancel", ToAllAction::Cancel),
-            false => ("Compare Again", ToAllAction::Read),
+            false => ("Compare again", ToAllAction::Read),
         };
         if ui.add(Button::new(text).min_size(vec2(110.0, 30.0))).clicked() {
             commands.push(Command::ToAll(action));
@@ -117,9 +116,11 @@ fn share_ui(ui: &mut Ui, share: &Share) {
     } else {
         CollapsingHeader::new(text.to_string()).default_open(true).show(ui, |ui| differences_ui(ui, share));
     }
-    let color = Palette::of(ui).warning;
     for note in &share.notes {
-        ui.add(Label::new(egui::RichText::new(note.to_string()).color(color)).wrap());
+        weak_ui(ui, &note.to_string());
+    }
+    for warning in &share.warnings {
+        line_ui(ui, IndicatorState::Warning, &warning.to_string());
     }
 }
 

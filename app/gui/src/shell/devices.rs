@@ -401,7 +401,9 @@ fn units_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
             }
         }
         for connection in others {
-            heading_ui(ui, connection.phase.target().unwrap_or_default());
+            let target = connection.phase.target().unwrap_or_default();
+            ui.add_space(4.0);
+            ui.add(Label::new(RichText::new(target).small().weak()).truncate()).on_hover_text(target);
             for unit in &connection.link.units {
                 board_ui(ui, connection, unit, false, commands);
             }

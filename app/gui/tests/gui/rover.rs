@@ -110,25 +110,25 @@ fn boards_get_their_addresses_one_after_the_other_with_one_yes_each() {
         bench.model().addressing
     );
 
-    bench.press("Find the Board");
+    bench.press("Find the board");
     wait_for(&mut bench, "RoboClaw 2x30A at 0x80 gets the address 0x81");
     assert_eq!(addresses(&bench)[0], (0x80, 0x80), "nothing is written before somebody says yes");
-    bench.press("Give It 0x81");
+    bench.press("Give it 0x81");
     wait_for(&mut bench, "The RoboClaw 2x30A answers at 0x81.");
     assert_eq!(addresses(&bench)[0].1, 0x81, "it is saved");
 
-    bench.press("Find the Board");
+    bench.press("Find the board");
     wait_for(&mut bench, "that waits for an address. Connect it");
     power(&bench, 1, false, true);
-    bench.press("Find the Board");
+    bench.press("Find the board");
     wait_for(&mut bench, "gets the address 0x82");
-    bench.press("Give It 0x82");
+    bench.press("Give it 0x82");
     wait_for(&mut bench, "The RoboClaw 2x30A answers at 0x82.");
 
     power(&bench, 2, false, true);
-    bench.press("Find the Board");
-    wait_for(&mut bench, "gets the address 0x80");
-    bench.press("Give It 0x80");
+    bench.press("Find the board");
+    wait_for(&mut bench, "RoboClaw 2x30A at 0x80 stays at 0x80");
+    bench.press("Give it 0x80");
     wait_for(&mut bench, "All 3 boards have their addresses.");
     bench.pass_ms(5000);
     assert_eq!(addresses(&bench), [(0x81, 0x81), (0x82, 0x82), (0x80, 0x80)]);
@@ -144,9 +144,9 @@ fn two_boards_at_one_address_are_not_given_another_together() {
     bench.connect();
     begin_addressing(&mut bench, "0x81-0x82");
     power(&bench, 1, false, true);
-    bench.press("Find the Board");
+    bench.press("Find the board");
     bench.pass_ms(12_000);
-    assert!(!bench.sees("Give It 0x81"), "{:?}", bench.model().addressing.said);
+    assert!(!bench.sees("Give it 0x81"), "{:?}", bench.model().addressing.said);
     let (gravity, text) = bench.model().addressing.said.clone().expect("it is said");
     assert_eq!(gravity, brushwork_gui::model::Gravity::Error, "{text}");
     assert_eq!(addresses(&bench), [(0x80, 0x80), (0x80, 0x80)]);
@@ -172,12 +172,12 @@ fn an_address_that_another_board_has_is_refused_and_so_is_no_list() {
     }
     type_into(&mut bench, "Addresses to give", "0x80");
     bench.press("Begin");
-    bench.press("Find the Board");
+    bench.press("Find the board");
     wait_for(&mut bench, "0x80 was not given to another unit");
     bench.press("End");
     type_into(&mut bench, "Addresses to give", "0x84-0x85");
     bench.press("Begin");
-    bench.press("Find the Board");
+    bench.press("Find the board");
     wait_for(&mut bench, "wait for an address, at 0x80, 0x83");
     assert_eq!(addresses(&bench), [(0x80, 0x80), (0x83, 0x83)]);
 }
@@ -222,14 +222,14 @@ fn one_profile_goes_to_all_units_of_all_links_with_the_differences_of_each_and_o
     let mut bench = Bench::of_bus(Bus::new(boards, StreamIndex::Uart1).expect("TTL lines can be shared"));
     bench.connect();
     open_profile(&mut bench, &folder);
-    bench.press("Write to All Units…");
+    bench.press("Write to all units…");
     wait_for(&mut bench, "All are compared. Nothing was written yet.");
     let texts = bench.harness.query_all_by_label_contains("-> 28.0 V").count();
     assert_eq!(texts, 3, "each shows what changes");
     assert!(bench.sees_part("30.0 V -> 28.0 V"), "each its own");
     let before = limits(&bench);
     assert_ne!(before[0], 280);
-    bench.press("Write to 3 Units");
+    bench.press("Write to 3 units");
     wait_for(&mut bench, "All 3 units have the profile.");
     assert_eq!(limits(&bench), [280; 3]);
     let now: Vec<u8> = addresses(&bench).into_iter().map(|(now, _)| now).collect();
@@ -247,14 +247,14 @@ fn nothing_is_written_to_any_unit_where_one_cannot_take_the_profile() {
     open_profile(&mut bench, &folder);
     let before = limits(&bench);
     power(&bench, 2, true, false);
-    bench.press("Write to All Units…");
+    bench.press("Write to all units…");
     wait_for(&mut bench, "Not all that are ticked can take the profile");
     assert!(!is_enabled(&bench, "Write"));
     assert_eq!(limits(&bench)[..2], before[..2]);
     let silent = bench.model().to_all.units[2].name();
     bench.harness.get_by_role_and_label(Role::CheckBox, &silent).click();
     bench.pass_ms(300);
-    bench.press("Write to 2 Units");
+    bench.press("Write to 2 units");
     wait_for(&mut bench, "All 2 units have the profile.");
     assert_eq!(limits(&bench)[..2], [280; 2]);
 }
@@ -278,11 +278,11 @@ fn a_profile_goes_to_units_of_other_links_too_and_is_saved_where_that_is_asked_f
     bench.press("General Settings");
     bench.pass_ms(500);
     bench.press("Compare settings");
-    bench.press("Write to All Units…");
+    bench.press("Write to all units…");
     wait_for(&mut bench, "All are compared. Nothing was written yet.");
     bench.harness.get_by_role_and_label(Role::CheckBox, "Save all settings of each to EEPROM too").click();
     bench.pass_ms(200);
-    bench.press("Write to 2 Units");
+    bench.press("Write to 2 units");
     wait_for(&mut bench, "All 2 units have the profile.");
     let stored = |bus: &mut Bus| bus.controllers()[0].stored_settings().battery.main_max_tenths;
     assert_eq!((bench.line.with(stored), bench.second.with(stored)), (280, 280));
@@ -336,7 +336,7 @@ fn write_raw(bench: &mut Bench, raw: &str) {
     type_into(bench, "Raw number", raw);
     bench.harness.get_by_role_and_label(Role::CheckBox, "I answer for what this number does").click();
     bench.pass_ms(200);
-    bench.press("Write This Number");
+    bench.press("Write this number");
 }
 
 fn unit_of(bench: &mut Bench) -> UnitId {
@@ -350,14 +350,14 @@ fn a_raw_number_is_written_at_the_owners_word_read_back_noted_and_undone() {
     let before = bench.model().front.raw_held().expect("it was read");
     assert_ne!(before, 2);
     type_into(&mut bench, "Raw number", "2");
-    assert!(!is_enabled(&bench, "Write This Number"), "nobody answers for it yet");
+    assert!(!is_enabled(&bench, "Write this number"), "nobody answers for it yet");
     write_raw(&mut bench, "0x02");
     wait_for(&mut bench, "The register of motor1.encoder.pin holds 2, as reading it back has shown.");
     let unit = unit_of(&mut bench);
     let noted = bench.store().raw_writes(&unit).unwrap();
     assert_eq!((noted[0].before, noted[0].wanted, noted[0].found), (Some(before), 2, Some(2)));
     assert!(!noted[0].is_open);
-    assert!(!is_enabled(&bench, "Write This Number"), "each number is agreed to by itself");
+    assert!(!is_enabled(&bench, "Write this number"), "each number is agreed to by itself");
     bench.pass_ms(8000);
     bench.press(&format!("Undo: {before} for {PIN}"));
     wait_for(&mut bench, &format!("The register of {PIN} holds {before}, as reading"));

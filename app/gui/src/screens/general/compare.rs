@@ -39,7 +39,7 @@ pub fn compare_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
     let has_profile = general.profiles.opened.is_some();
     vec![
         ("Take over all", Act::TakeOverAll, comparison.count() > 0),
-        ("Write to All Units…", Act::ToAll, has_profile),
+        ("Write to all units…", Act::ToAll, has_profile),
     ]
 }
 
