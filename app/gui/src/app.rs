@@ -408,6 +408,10 @@ impl App {
         if self.model.front.tune.is_running() {
             return self.disarm();
         }
+        // The unit that would be armed may be another one than is shown.
+        if self.model.front.is_turned_elsewhere() {
+            return self.model.messages.fail(WindowStatusMessage::AssistantWorks);
+        }
         self.model.front.link.refusals.clear();
         if self.request(Request::Arm(scope)) {
             self.model.front.link.arming = Arming::Asked(scope);

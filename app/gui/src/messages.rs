@@ -192,6 +192,7 @@ messages! {
         NodeStartSent { node: NodeId } "The start was sent to {node}: its heartbeat tells what comes of it.",
         ConnectAgain { sentence: Message } "{sentence} Connect to the bus again.",
         NodeNotStarted "Could not start the node: the system gave no thread. Try again.",
+        AssistantWorks "Something is read from or written to the units of this link. Wait for it or cancel it.",
         DownloadRuns "A download runs already. Wait for it or cancel it.",
         WaitsForRun "That waits for the end of the tuning run, so that the time-out and the gains of before are written, not those of the run.",
         ReportIsIn { path: String } "The report is in {path}.",

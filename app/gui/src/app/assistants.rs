@@ -8,7 +8,7 @@ use brushwork_link::{ConnectTarget, DeviceHandle, Failure, Job, Message, PollRat
 
 use super::App;
 use crate::focus::{self, Region};
-use crate::messages::{AddressingMessage, ToAllMessage, WindowCauseMessage};
+use crate::messages::{AddressingMessage, RawPageMessage, ToAllMessage, WindowCauseMessage};
 use crate::model::addressing::{self, AddressingAction};
 use crate::model::errand::Asked;
 use crate::model::raw::RawAction;
@@ -98,10 +98,16 @@ impl App {
             AddressingAction::Find => model.addressing.find(),
             AddressingAction::Give => model.addressing.give(),
             AddressingAction::End => {
-                if let Some(connection) = model.addressing.connection().and_then(|id| model.connection(id)) {
-                    connection.errand.cancel();
-                }
+                let of = model.addressing.connection();
                 model.addressing.end();
+                if let Some(connection) = of.and_then(|id| self.model.connection(id)) {
+                    connection.errand.cancel();
+                    let (id, poll) = (connection.id(), connection.poll);
+                    // It may have been listening as closely as the line lets it.
+                    if self.links.device(id).is_some() {
+                        self.request_of(id, Request::Poll(poll));
+                    }
+                }
             }
         }
     }
@@ -236,6 +242,9 @@ impl App {
                 let id = self.model.front.id();
                 let job = self.begin_errand(id, asked);
                 self.model.front.raw.begun(job);
+                if job.is_none() {
+                    self.model.front.raw.ended = Some((Gravity::Error, RawPageMessage::Busy.into()));
+                }
             }
             Ok(None) => {}
             Err(why) => self.model.front.raw.ended = Some((Gravity::Error, why)),

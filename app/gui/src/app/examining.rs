@@ -37,6 +37,9 @@ impl App {
         if front.is_guided() {
             return Err(ProfilePlanMessage::JobRuns.into());
         }
+        if front.is_turned_elsewhere() {
+            return Err(WindowStatusMessage::AssistantWorks.into());
+        }
         let options =
             WriteOptions { own_stream: front.link.stream, simulated: identity.simulated, as_read: true };
         let raw_writes = store.raw_writes(&UnitId::new(&identity, &ports)).map_err(Message::error)?;

@@ -12,6 +12,7 @@ use crate::model::{IndicatorState, Model};
 use crate::widgets::{heading_ui, text_field_ui};
 
 const FIELD_WIDTH: f32 = 260.0;
+const STEP_SIZE: egui::Vec2 = vec2(140.0, 30.0);
 
 /// Draws the window, if it is open, within `room`.
 pub fn addressing_ui(ctx: &Context, model: &mut Model, commands: &mut Commands, room: Rect) {
@@ -43,12 +44,8 @@ fn contents_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             ui.set_max_width(FIELD_WIDTH);
             text_field_ui(ui, &mut addressing.typed, "Addresses to give", "0x80-0x84, or 0x81,0x83");
         });
-        let (text, action) = match addressing.is_running() {
-            false => ("Begin", AddressingAction::Begin),
-            true => ("End", AddressingAction::End),
-        };
-        if ui.button(text).clicked() {
-            commands.push(Command::Addressing(action));
+        if !addressing.is_running() && ui.button("Begin").clicked() {
+            commands.push(Command::Addressing(AddressingAction::Begin));
         }
     });
     places_ui(ui, model);
@@ -56,7 +53,7 @@ fn contents_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     match model.addressing.step() {
         Some(Step::PlugIn(number)) => {
             weak_ui(ui, &Message::from(AddressingMessage::PlugIn { address: name(number) }).to_string());
-            button_ui(ui, "Find the board", AddressingAction::Find, commands);
+            step_ui(ui, "Find the board", AddressingAction::Find, commands);
         }
         Some(Step::Give { unit, number, stays }) => {
             let address = name(number);
@@ -67,12 +64,13 @@ fn contents_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             };
             ui.add(egui::Label::new(Message::from(will).to_string()).wrap());
             let text = Message::from(AddressingMessage::Give { address }).to_string();
-            button_ui(ui, &text, AddressingAction::Give, commands);
+            step_ui(ui, &text, AddressingAction::Give, commands);
         }
         Some(Step::Works(what)) => {
             ui.horizontal(|ui| {
                 ui.spinner();
                 ui.label(what.to_string());
+                end_ui(ui, commands);
             });
             if let Some(text) = progress {
                 ui.weak(text);
@@ -83,9 +81,24 @@ fn contents_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     said_ui(ui, model.addressing.said.as_ref());
 }
 
-fn button_ui(ui: &mut Ui, text: &str, action: AddressingAction, commands: &mut Commands) {
-    if ui.add(Button::new(text).min_size(vec2(140.0, 30.0))).clicked() {
-        commands.push(Command::Addressing(action));
+/// The button of a step. It takes the keyboard that nothing else has, so that Enter goes from step to step.
+fn step_ui(ui: &mut Ui, text: &str, action: AddressingAction, commands: &mut Commands) {
+    ui.horizontal(|ui| {
+        let button = ui.add(Button::new(text).min_size(STEP_SIZE));
+        if ui.memory(|memory| memory.focused().is_none()) {
+            button.request_focus();
+        }
+        if button.clicked() {
+            commands.push(Command::Addressing(action));
+        }
+        end_ui(ui, commands);
+    });
+}
+
+fn end_ui(ui: &mut Ui, commands: &mut Commands) {
+    let end = ui.add(Button::new("End").min_size(vec2(70.0, STEP_SIZE.y)));
+    if end.on_hover_text("What was given stays given").clicked() {
+        commands.push(Command::Addressing(AddressingAction::End));
     }
 }
 

@@ -3,9 +3,11 @@
 
 use brushwork_core::keep::UnitId;
 use brushwork_gui::focus::Region;
+use brushwork_gui::model::Arming;
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig, Quirks};
 use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::packet_serial::{Address, Generation, number};
+use brushwork_motion_mind_sim::{Mode, MotionMindConfig};
 use brushwork_plant::machine::StreamIndex;
 use brushwork_plant::world::WorldAction;
 use brushwork_values::Motor;
@@ -192,6 +194,22 @@ fn boards_that_have_an_address_of_the_list_already_are_shown_and_not_asked_for()
     assert!(bench.sees_part("Plug in the board that is to have 0x82."));
 }
 
+#[test]
+fn a_unit_of_another_family_is_given_its_address_by_what_that_family_says() {
+    let mut bench = Bench::with_minds(vec![MotionMindConfig::new(Mode::SerialPid)]);
+    bench.pass_ms(200);
+    bench.choose("Simulated model", "Motion Mind 3");
+    bench.press("Connect");
+    bench.pass_ms(3000);
+    begin_addressing(&mut bench, "5");
+    bench.press("Find the board");
+    wait_for(&mut bench, "gets the address 5");
+    bench.press("Give it 5");
+    wait_for(&mut bench, "The board has its address.");
+    let register = brushwork_motion_mind_wire::register_named("ADDRESS").map_or(0, |row| row.number);
+    assert_eq!(bench.minds.with(|bus| bus.motion_minds()[0].read_one(register)), 5);
+}
+
 // ---- one profile for all ----
 
 fn limits(bench: &Bench) -> Vec<u16> {
@@ -230,6 +248,14 @@ fn one_profile_goes_to_all_units_of_all_links_with_the_differences_of_each_and_o
     let before = limits(&bench);
     assert_ne!(before[0], 280);
     bench.press("Write to 3 units");
+    assert!(bench.model().front.is_turned_elsewhere());
+    bench.press("PWM Settings");
+    bench.press("Arm");
+    assert_eq!(
+        bench.model().front.link.arming,
+        Arming::Disarmed,
+        "another unit than is shown might be armed"
+    );
     wait_for(&mut bench, "All 3 units have the profile.");
     assert_eq!(limits(&bench), [280; 3]);
     let now: Vec<u8> = addresses(&bench).into_iter().map(|(now, _)| now).collect();
@@ -399,6 +425,12 @@ fn a_raw_write_that_is_cut_off_is_noted_and_named_at_the_next_connection() {
 
 // ---- keyboard ----
 
+/// What has the keyboard, by its name.
+fn focused(bench: &Bench) -> Option<String> {
+    let mut nodes = bench.harness.root().children_recursive();
+    nodes.find(|node| node.accesskit_node().is_focused())?.accesskit_node().label()
+}
+
 #[test]
 fn each_assistant_is_opened_from_the_palette_and_has_the_keyboard() {
     for (typed, button) in [("boards their addresses", "Addresses to give"), ("raw settings", "Setting")] {
@@ -411,12 +443,6 @@ fn each_assistant_is_opened_from_the_palette_and_has_the_keyboard() {
         bench.key(Key::Enter);
         bench.pass_ms(500);
         assert!(bench.sees(button), "{typed}: {:?}", bench.said());
-        let focused = |bench: &Bench| {
-            let mut nodes = bench.harness.root().children_recursive();
-            nodes
-                .find(|node| node.accesskit_node().is_focused())
-                .and_then(|node| node.accesskit_node().label())
-        };
         assert_eq!(focused(&bench).as_deref(), Some(button), "{typed}");
         // F6 comes back to it.
         let mut passed = Vec::new();
@@ -427,6 +453,26 @@ fn each_assistant_is_opened_from_the_palette_and_has_the_keyboard() {
         }
         assert!(passed.iter().any(|label| label.as_deref() == Some(button)), "{typed}: {passed:?}");
     }
+}
+
+#[test]
+fn boards_are_given_their_addresses_by_the_enter_key_alone() {
+    let mut bench = rover(&[0x80], 1);
+    bench.connect();
+    from_menu(&mut bench, "Give Boards Their Addresses…");
+    type_into(&mut bench, "Addresses to give", "0x83");
+    bench.focus("Begin");
+    bench.key(Key::Enter);
+    bench.pass_ms(300);
+    for (button, part) in
+        [("Find the board", "gets the address 0x83"), ("Give it 0x83", "The board has its address.")]
+    {
+        assert_eq!(focused(&bench).as_deref(), Some(button));
+        bench.key(Key::Enter);
+        wait_for(&mut bench, part);
+        bench.pass_ms(300);
+    }
+    assert_eq!(addresses(&bench), [(0x83, 0x83)]);
 }
 
 // ---- commands learned anew ----
