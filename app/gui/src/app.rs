@@ -470,6 +470,7 @@ impl App {
     /// Stops all motors of every link, at once and without asking anything first.
     fn stop(&mut self) {
         self.links.stop_all();
+        self.model.to_all.cancel();
         for connection in self.model.connections_mut() {
             connection.tune.abort(EndedMessage::StopPressed);
             connection.examination.cancel(Gravity::Warning, EndedMessage::StopPressed);

@@ -203,9 +203,7 @@ impl ToAll {
     pub fn begin(&mut self, action: ToAllAction, connections: &[&Connection]) -> Result<(), Message> {
         let kind = match action {
             ToAllAction::Cancel => {
-                if let Some(round) = &mut self.round {
-                    round.cancelled = true;
-                }
+                self.cancel();
                 return Ok(());
             }
             ToAllAction::Read if self.round.is_some() => return Err(ToAllMessage::GoesOn.into()),
@@ -224,6 +222,13 @@ impl ToAll {
         self.looked_at = connections.iter().filter_map(selected).collect();
         self.round = Some(Round { kind, at: 0, saving: false, cancelled: false });
         Ok(())
+    }
+
+    /// Begins with no further unit.
+    pub fn cancel(&mut self) {
+        if let Some(round) = &mut self.round {
+            round.cancelled = true;
+        }
     }
 
     /// What is to be done now; asked in every frame.

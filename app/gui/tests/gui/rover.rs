@@ -1,6 +1,8 @@
 //! Several boards in the window: their addresses, one profile for all, a row for each on whatever link, numbers written raw, and a firmware
 //! whose commands are learned anew.
 
+use std::time::Duration;
+
 use brushwork_core::keep::UnitId;
 use brushwork_gui::focus::Region;
 use brushwork_gui::model::Arming;
@@ -283,6 +285,42 @@ fn nothing_is_written_to_any_unit_where_one_cannot_take_the_profile() {
     bench.press("Write to 2 units");
     wait_for(&mut bench, "All 2 units have the profile.");
     assert_eq!(limits(&bench)[..2], [280; 2]);
+}
+
+#[test]
+fn stop_in_mid_round_writes_to_no_further_unit_and_says_who_has_the_profile() {
+    let folder = tempfile::tempdir().unwrap();
+    let late = |address| {
+        let quirks = Quirks { late: Duration::from_millis(10), ..Quirks::default() };
+        let config = ControllerConfig { quirks, ..board(address).config().clone() };
+        Controller::new(config).expect("the default world is sound")
+    };
+    let boards = [0x80, 0x81, 0x82].map(late).to_vec();
+    let mut bench = Bench::of_bus(Bus::new(boards, StreamIndex::Uart1).expect("TTL lines can be shared"));
+    bench.press("Connect");
+    bench.pass_ms(5000);
+    open_profile(&mut bench, &folder);
+    bench.pass_ms(10_000);
+    let before = limits(&bench);
+    bench.press("Write to all units…");
+    wait_for(&mut bench, "All are compared. Nothing was written yet.");
+    bench.press("Write to 3 units");
+    for _ in 0..100 {
+        if limits(&bench)[0] == 280 {
+            break;
+        }
+        bench.pass_ms(20);
+    }
+    assert_eq!(limits(&bench)[0], 280);
+    bench.key(Key::Escape);
+    bench.pass_ms(8000);
+    assert_eq!(limits(&bench)[2], before[2], "the last is not begun");
+    assert!(
+        bench.sees_part(" of 3 units have the profile. Each row says"),
+        "{:?}",
+        bench.model().to_all.ended
+    );
+    assert!(!bench.model().to_all.is_running());
 }
 
 #[test]
