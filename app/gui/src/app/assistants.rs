@@ -87,7 +87,7 @@ impl App {
         let Self { model, .. } = self;
         let is_busy = is_taken(&model.front);
         match action {
-            AddressingAction::Begin | AddressingAction::Find if is_busy => {
+            AddressingAction::Begin | AddressingAction::Find | AddressingAction::Choose(_) if is_busy => {
                 self.model.messages.fail(AddressingMessage::Busy);
             }
             AddressingAction::Begin => {
@@ -96,6 +96,14 @@ impl App {
                 }
             }
             AddressingAction::Find => model.addressing.find(),
+            AddressingAction::Choose(address) => {
+                let of = model.addressing.connection();
+                let mut addressing = std::mem::take(&mut model.addressing);
+                if let Some(connection) = of.and_then(|id| model.connection(id)) {
+                    addressing.choose(address, connection);
+                }
+                model.addressing = addressing;
+            }
             AddressingAction::Give => model.addressing.give(),
             AddressingAction::End => {
                 let of = model.addressing.connection();

@@ -32,6 +32,8 @@ pub enum AddressingAction {
     Begin,
     /// The next board is plugged in.
     Find,
+    /// Of several boards that wait the one at this address is meant.
+    Choose(u8),
     /// The board that was found is to have the address.
     Give,
     End,
@@ -75,6 +77,10 @@ enum Stage {
     Searching {
         search: Search,
         is_asked: bool,
+    },
+    /// Somebody says which of several is meant, that answer at these addresses.
+    Choosing {
+        addresses: Vec<u8>,
     },
     Listening {
         unit: Box<Identity>,
@@ -127,6 +133,8 @@ pub struct Addressing {
 pub enum Step {
     /// The next board is to be plugged in for this address.
     PlugIn(u8),
+    /// It is to be said which of the boards at these addresses is meant.
+    Choose(Vec<u8>),
     /// This board is to have this address: what it is, and where, and whether it is there already.
     Give { unit: String, number: u8, stays: bool },
     /// Something goes on by itself.
@@ -161,7 +169,8 @@ impl Addressing {
     /// The same while it is at work there by itself.
     pub fn works_on(&self) -> Option<ConnectionId> {
         let run = self.run.as_ref()?;
-        (!matches!(run.stage, Stage::Waiting | Stage::Asking { .. })).then_some(run.connection)
+        let waits = matches!(run.stage, Stage::Waiting | Stage::Choosing { .. } | Stage::Asking { .. });
+        (!waits).then_some(run.connection)
     }
 
     /// The work that was asked for and has not been seen to end.
@@ -180,6 +189,7 @@ impl Addressing {
         let number = self.next_number();
         Some(match &run.stage {
             Stage::Waiting => Step::PlugIn(number?),
+            Stage::Choosing { addresses } => Step::Choose(addresses.clone()),
             Stage::Asking { unit, .. } => {
                 let at = AddressingMessage::UnitAt { unit: unit.title().to_owned(), place: unit.place() };
                 let number = number?;
@@ -223,9 +233,19 @@ impl Addressing {
 
     /// The next board is plugged in: the line is searched.
     pub fn find(&mut self) {
-        if let Some(run) = self.run.as_mut().filter(|run| matches!(run.stage, Stage::Waiting)) {
+        let waits = |run: &&mut Run| matches!(run.stage, Stage::Waiting | Stage::Choosing { .. });
+        if let Some(run) = self.run.as_mut().filter(waits) {
             self.said = None;
             run.stage = Stage::Searching { search: Search::Next, is_asked: false };
+        }
+    }
+
+    /// Of several boards that wait the one at an address is meant.
+    pub fn choose(&mut self, address: u8, connection: &Connection) {
+        let is_asked = self.run.as_ref().is_some_and(|run| matches!(run.stage, Stage::Choosing { .. }));
+        if let (true, Some(number)) = (is_asked, self.next_number()) {
+            self.said = None;
+            self.take_meant(meant(&connection.link.units, number, Some(address), &self.given()), number);
         }
     }
 
@@ -274,7 +294,7 @@ impl Addressing {
             return Vec::new();
         }
         match &mut run.stage {
-            Stage::Waiting | Stage::Asking { .. } => Vec::new(),
+            Stage::Waiting | Stage::Choosing { .. } | Stage::Asking { .. } => Vec::new(),
             Stage::Searching { search, is_asked } => {
                 let search = *search;
                 match (&connection.phase, *is_asked) {
@@ -286,16 +306,19 @@ impl Addressing {
                     }
                     (Phase::Closing { .. }, _) | (Phase::Opening { .. }, true) => Vec::new(),
                     (Phase::Open { .. }, true) if connection.link.selected.is_none() => Vec::new(),
-                    (Phase::Open { .. }, true) => self.found(search, &connection.link.units),
+                    (Phase::Open { .. }, true) => {
+                        self.found(search, &connection.link.units);
+                        Vec::new()
+                    }
                     (Phase::Closed, true) => {
                         self.not_found(search);
                         Vec::new()
                     }
                 }
             }
-            Stage::Listening { until: until @ None, .. } => {
+            Stage::Listening { unit, until: until @ None } => {
                 *until = now.map(|now| now + LOOK);
-                Vec::new()
+                vec![Wish::Listen(unit.address)]
             }
             Stage::Listening { unit, until: Some(until) } => {
                 if now.is_none_or(|now| now < *until) {
@@ -358,44 +381,38 @@ impl Addressing {
         }
     }
 
-    fn found(&mut self, search: Search, units: &[Identity]) -> Vec<Wish> {
-        let Some(line) = self.run.as_ref().map(|run| run.line.clone()) else { return Vec::new() };
+    fn found(&mut self, search: Search, units: &[Identity]) {
         if search == Search::All {
-            self.end();
-            return Vec::new();
+            return self.end();
         }
-        let Some(number) = self.next_number() else { return Vec::new() };
+        let Some(number) = self.next_number() else { return };
         if search == Search::Again {
-            match units.iter().find(|unit| answers_at(unit, number)) {
+            return match units.iter().find(|unit| answers_at(unit, number)) {
                 Some(unit) => self.met(number, unit),
                 None => self.not_found(search),
-            }
-            return Vec::new();
+            };
         }
         self.note_found(units);
-        let Some(number) = self.next_number() else {
-            self.turn_to(Stage::Waiting);
-            self.all_have_theirs();
-            return Vec::new();
-        };
-        match meant(units, number, None, &self.given()) {
-            Meant::This(unit) => {
-                let address = unit.address;
-                self.turn_to(Stage::Listening { unit, until: None });
-                vec![Wish::Listen(address)]
+        match self.next_number() {
+            Some(number) => self.take_meant(meant(units, number, None, &self.given()), number),
+            None => {
+                self.turn_to(Stage::Waiting);
+                self.all_have_theirs();
             }
-            Meant::Nobody => {
-                self.fail(AddressMessage::NobodyWaits { place: line });
-                Vec::new()
-            }
+        }
+    }
+
+    fn take_meant(&mut self, meant: Meant, number: u8) {
+        let Some(line) = self.run.as_ref().map(|run| run.line.clone()) else { return };
+        match meant {
+            Meant::This(unit) => self.turn_to(Stage::Listening { unit, until: None }),
+            Meant::Nobody => self.fail(AddressMessage::NobodyWaits { place: line }),
             Meant::Several(addresses) => {
-                self.fail(AddressingMessage::SeveralWait { units: in_words(&addresses), place: line });
-                Vec::new()
+                let units = in_words(&addresses);
+                self.fail(AddressingMessage::SeveralWait { units, place: line });
+                self.turn_to(Stage::Choosing { addresses });
             }
-            Meant::Taken => {
-                self.fail(AddressMessage::Taken { address: name(number), place: line });
-                Vec::new()
-            }
+            Meant::Taken => self.fail(AddressMessage::Taken { address: name(number), place: line }),
         }
     }
 

@@ -1,6 +1,7 @@
 //! The assistant that gives boards their addresses: which has its own, which is next, and what to do now.
 
 use brushwork_core::addresses::name;
+use brushwork_core::words::capital;
 use brushwork_link::Message;
 use egui::{Button, Context, Grid, Rect, Ui, vec2};
 
@@ -36,7 +37,7 @@ fn contents_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         .connection()
         .and_then(|id| model.connection(id))
         .and_then(|connection| connection.errand.progress())
-        .map(|(_, text)| text.to_owned());
+        .map(|(_, text)| capital(text));
     let addressing = &mut model.addressing;
     ui.horizontal(|ui| {
         ui.label("Addresses");
@@ -54,6 +55,18 @@ fn contents_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         Some(Step::PlugIn(number)) => {
             weak_ui(ui, &Message::from(AddressingMessage::PlugIn { address: name(number) }).to_string());
             step_ui(ui, "Find the board", AddressingAction::Find, commands);
+        }
+        Some(Step::Choose(addresses)) => {
+            step_ui(ui, "Find the board", AddressingAction::Find, commands);
+            ui.horizontal_wrapped(|ui| {
+                for address in addresses {
+                    let text =
+                        Message::from(AddressingMessage::TheOne { address: name(address) }).to_string();
+                    if ui.button(text).clicked() {
+                        commands.push(Command::Addressing(AddressingAction::Choose(address)));
+                    }
+                }
+            });
         }
         Some(Step::Give { unit, number, stays }) => {
             let address = name(number);

@@ -2,6 +2,7 @@
 
 use brushwork_core::examine::RawWrite;
 use brushwork_core::messages::RawMessage;
+use brushwork_core::words::capital;
 use brushwork_link::Message;
 use egui::{Button, Checkbox, ComboBox, Context, Label, Rect, RichText, Ui, vec2};
 
@@ -74,6 +75,7 @@ fn contents_ui(ui: &mut Ui, front: &mut Connection, commands: &mut Commands) {
     let color = Palette::of(ui).warning;
     ui.add(Label::new(RichText::new(RawMessage::Warning.to_string()).color(color)).wrap());
     let is_running = page.is_running();
+    let progress = front.errand.progress().filter(|_| is_running).map(|(_, text)| capital(text));
     ui.add_enabled(!is_running, Checkbox::new(&mut page.is_agreed, "I answer for what this number does"));
     let can_write = page.is_agreed && !is_running && !page.typed.trim().is_empty();
     ui.horizontal(|ui| {
@@ -81,8 +83,9 @@ fn contents_ui(ui: &mut Ui, front: &mut Connection, commands: &mut Commands) {
         if ui.add_enabled(can_write, Button::new("Write this number").min_size(size)).clicked() {
             commands.push(Command::WriteRaw(RawAction::Write));
         }
-        if is_running {
+        if let Some(text) = &progress {
             ui.spinner();
+            ui.weak(text);
         }
     });
     said_ui(ui, front.raw.ended.as_ref());

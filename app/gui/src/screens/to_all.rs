@@ -1,8 +1,9 @@
 //! One profile for every unit: who gets it, what changes on each, and what became of it.
 
 use brushwork_core::settings::for_all::Share;
+use brushwork_core::words::capital;
 use brushwork_link::Message;
-use egui::{Button, Checkbox, CollapsingHeader, Context, Grid, Label, Rect, Ui, vec2};
+use egui::{Button, Checkbox, CollapsingHeader, Context, Grid, Label, ProgressBar, Rect, Ui, vec2};
 
 use super::dialog::{dialog_ui, said_ui, weak_ui};
 use crate::command::{Command, Commands};
@@ -14,15 +15,21 @@ use crate::model::{Gravity, IndicatorState, Model};
 pub fn to_all_ui(ctx: &Context, model: &mut Model, commands: &mut Commands, room: Rect) {
     if model.to_all.open {
         let size = vec2(720.0, 600.0);
+        let of = model.to_all.job().and_then(|(id, _)| model.connection(id));
+        let progress = of.and_then(|connection| connection.errand.progress());
+        let progress = progress.map(|(share, text)| (share, capital(text)));
         let open = dialog_ui(ctx, "One profile for all units", (room, size), |ui| {
-            contents_ui(ui, &mut model.to_all, commands);
+            contents_ui(ui, &mut model.to_all, progress.as_ref(), commands);
         });
         // What goes on goes on; the window can be opened again.
         model.to_all.open = open;
     }
 }
 
-fn contents_ui(ui: &mut Ui, to_all: &mut ToAll, commands: &mut Commands) {
+/// How far the work with one unit is, and what it does.
+type Progress<'p> = Option<&'p (f32, String)>;
+
+fn contents_ui(ui: &mut Ui, to_all: &mut ToAll, progress: Progress<'_>, commands: &mut Commands) {
     weak_ui(
         ui,
         "Each unit keeps its own address. What changes on each is shown first; nothing is written where one that is ticked cannot take it. \
@@ -65,19 +72,20 @@ fn contents_ui(ui: &mut Ui, to_all: &mut ToAll, commands: &mut Commands) {
     for (index, target) in to_all.units.iter_mut().enumerate() {
         ui.add_space(6.0);
         ui.push_id((target.connection, target.identity.address), |ui| {
-            target_ui(ui, target, current == Some(index), is_running);
+            let progress = progress.filter(|_| current == Some(index));
+            target_ui(ui, target, progress, is_running);
         });
     }
 }
 
-fn target_ui(ui: &mut Ui, target: &mut Target, is_current: bool, is_running: bool) {
+fn target_ui(ui: &mut Ui, target: &mut Target, progress: Progress<'_>, is_running: bool) {
     let name = target.name();
     ui.horizontal(|ui| {
         ui.add_enabled(!is_running, Checkbox::new(&mut target.chosen, name));
-        if is_current {
-            ui.spinner();
-        }
     });
+    if let Some((share, text)) = progress {
+        ui.add(ProgressBar::new(*share).desired_height(14.0).text(text));
+    }
     ui.indent("unit", |ui| match &target.state {
         State::Waiting if target.chosen => drop(ui.weak("waits to be compared")),
         State::Waiting => drop(ui.weak("not compared")),

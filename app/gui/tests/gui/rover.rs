@@ -157,7 +157,7 @@ fn two_boards_at_one_address_are_not_given_another_together() {
 }
 
 #[test]
-fn an_address_that_another_board_has_is_refused_and_so_is_no_list() {
+fn an_address_that_another_board_has_is_refused_and_of_several_that_wait_one_is_chosen() {
     let mut bench = rover(&[0x80, 0x83], 2);
     bench.connect();
     begin_addressing(&mut bench, "0x81,0x81");
@@ -184,6 +184,11 @@ fn an_address_that_another_board_has_is_refused_and_so_is_no_list() {
     bench.press("Find the board");
     wait_for(&mut bench, "wait for an address, at 0x80, 0x83");
     assert_eq!(addresses(&bench), [(0x80, 0x80), (0x83, 0x83)]);
+    bench.press("The one at 0x83");
+    wait_for(&mut bench, "RoboClaw 2x30A at 0x83 gets the address 0x84");
+    bench.press("Give it 0x84");
+    wait_for(&mut bench, "The RoboClaw 2x30A answers at 0x84.");
+    assert_eq!(addresses(&bench), [(0x80, 0x80), (0x84, 0x84)]);
 }
 
 #[test]
@@ -194,6 +199,21 @@ fn boards_that_have_an_address_of_the_list_already_are_shown_and_not_asked_for()
     let places = bench.model().addressing.places().to_vec();
     assert_eq!(places[0].has.as_deref(), Some("RoboClaw 2x30A"));
     assert!(bench.sees_part("Plug in the board that is to have 0x82."));
+}
+
+#[test]
+fn over_usb_a_board_answers_at_every_address_and_is_known_by_its_settings_when_it_stays_plugged_in() {
+    let mut bench = Bench::of(board(0x80));
+    bench.connect();
+    assert!(!bench.model().front.link.units[0].also_answers.is_empty(), "as over USB");
+    begin_addressing(&mut bench, "0x81-0x82");
+    bench.press("Find the board");
+    wait_for(&mut bench, "gets the address 0x81");
+    bench.press("Give it 0x81");
+    wait_for(&mut bench, "The RoboClaw 2x30A answers at 0x81.");
+    bench.press("Find the board");
+    wait_for(&mut bench, "This RoboClaw 2x30A has 0x81 already. Plug in the next one.");
+    assert_eq!(addresses(&bench), [(0x81, 0x81)]);
 }
 
 #[test]
