@@ -2,7 +2,7 @@
 
 use brushwork_canopen::NodeId;
 use brushwork_core::messages::EndedMessage;
-use brushwork_link::device::DisarmReason;
+use brushwork_link::device::{ArmScope, DisarmReason};
 use brushwork_link::{Interruption, Message};
 use brushwork_values::{Motor, Sentences, messages};
 
@@ -285,6 +285,7 @@ messages! {
         Defaults "The controller works with its default settings. Save to EEPROM to keep them.",
         OwnDefaults { settings: String } "The controller works with its default settings. Save to EEPROM to keep them. {settings} came back with another value than listed here.",
         Unfinished { what: Message } "{what} General Settings says which settings are old and which are new.",
+        ProfileSaved { settings: String, path: String } "{settings} are in {path}.",
     }
 }
 
@@ -414,6 +415,12 @@ messages! {
         SavedOne { path: String } "Saved 1 transaction to {path}.",
         Saved { count: usize, path: String } "Saved {count} transactions to {path}.",
         NotSaved { path: String, error: String } "Could not save the traffic to {path}: {error}. Choose another folder or name.",
+        Shown { shown: usize, all: usize } "{shown} of {all} transactions",
+        Dropped { dropped: u64 } ", {dropped} older ones dropped",
+        Missed { missed: u64 } ", {missed} packets not recorded while paused",
+        NotWritten { refusal: Message } "Cannot be written: {refusal}",
+        OneDropped ", 1 older one dropped",
+        OneMissed ", 1 packet not recorded while paused",
     }
 }
 
@@ -443,6 +450,7 @@ messages! {
         NotBegun { why: Message } "The update did not begin: {why} Nothing was erased.",
         CannotSend { why: Message } "{why}: switch the controller off and on.",
         NotFound { path: String, error: String } "Could not read {path}: {error}.",
+        PortWaits { product: String } "{product}: waits for firmware, see Device > Firmware",
     }
 }
 
@@ -472,5 +480,89 @@ messages! {
         NoCount "No count has changed since the connection.",
         BackupMade "The settings are backed up on this computer.",
         BackupNotRead "The settings have not been read, so there is nothing to back up yet.",
+    }
+}
+
+messages! {
+    /// What
+    pub enum NameMessage {
+        Profile { name: String } "Profile {name}",
+        Backup { title: String } "Backup {title}",
+        Line { line: u32 } "Line {line}",
+        ArmedFor { scope: ArmScope } "Armed for {scope}",
+        RunLine { number: usize } "run {number}",
+        Program { version: &'static str } "Brushwork {version}",
+        System { licence: &'static str, system: &'static str, processor: &'static str } "Licence: {licence}. System: {system} on {processor}.",
+        Unit { address: String } "unit {address}",
+        Run { number: usize } "Run {number}",
+        Motor { number: usize } "Motor {number}",
+        MotorHead { number: usize } "Motor {number}:",
+        Pin { number: usize } "Pin {number}",
+        Found { count: usize } "{count} found",
+        Of { number: usize, all: usize } "{number} of {all}",
+        To { from: String, to: String } "{from} to {to}",
+    }
+}
+
+messages! {
+    /// What
+    pub enum ButtonMessage {
+        Show { what: String } "Show {what}",
+        Exact { name: String } "{name} exact",
+        ToZero { name: String } "{name} to zero",
+        StopAll { keys: String } "STOP ALL  ({keys})",
+        Start { what: String } "Start {what}",
+        Copies { text: String } "Copies {text}",
+        Revert { title: String } "Revert {title}",
+        Measure { motor: Motor } "Measure {motor}",
+        SetQpps { motor: Motor } "Set QPPS of {motor}",
+        ConnectTo { target: String } "Connect to {target}",
+        Open { name: String } "Open {name}",
+        Close { title: String } "Close {title}",
+        GoTo { place: String } "Go to {place}",
+    }
+}
+
+messages! {
+    /// What
+    pub enum SpokenMessage {
+        Sketch { caption: &'static str } "Sketch: {caption}",
+        NoValue { name: String } "{name}: no value",
+        Progress { what: String, text: String } "Progress: {what}, {text}",
+        Wiring { part: &'static str, wires: String } "Wiring: {part}, {wires}",
+    }
+}
+
+messages! {
+    /// How the link is getting on.
+    pub enum LinkMessage {
+        Traffic { kbit_per_s: f64, requests_per_s: f64 } "{kbit_per_s:.1} kbit/s, {requests_per_s:.0} requests/s",
+        RoundTrip { median: f64, most: f64 } "{median:.2} ms median, {most:.2} ms for 99 %",
+        Errors { timeouts: u64, bad_crc: u64, retries: u64 } "{timeouts} time-outs, {bad_crc} bad CRC, {retries} retries",
+        Rates { kbit_per_s: f64, requests_per_s: f64 } "{kbit_per_s:7.1} kbit/s {requests_per_s:6.0} req/s",
+        InFull { kbit_per_s: f64, requests_per_s: f64, median: f64, most: f64, timeouts: u64, crc_errors: u64, retries: u64, stray: u64, dropped: u64 } "{kbit_per_s:.1} kbit/s, {requests_per_s:.0} requests per second\nRound trip: median {median:.2} ms, 99 % within {most:.2} ms\nTime-outs {timeouts}, CRC errors {crc_errors}, retries {retries}, stray bytes {stray}, samples dropped {dropped}",
+    }
+}
+
+messages! {
+    /// What a field or a figure of one motor is called.
+    pub enum MotorFieldMessage {
+        Duty { motor: Motor } "{motor} duty",
+        Encoder { motor: Motor } "{motor} encoder",
+        Jog { motor: String, direction: &'static str } "{motor} jog {direction}",
+        Position { motor: Motor } "{motor} position",
+        Speed { motor: Motor } "{motor} speed",
+    }
+}
+
+messages! {
+    /// What is said of a packet that is sent by hand, and of its answer.
+    pub enum PacketMessage {
+        WillSend { text: String } "Will send: {text}",
+        Bytes { bytes: String } "Bytes: {bytes}",
+        NotSent { why: String } "Not sent: {why}.",
+        Answer { answer: String } "Answer: {answer}",
+        Write { step: String } "Write: {step}",
+        Means { meaning: String } "Means: {meaning}",
     }
 }

@@ -145,3 +145,88 @@ fn what_is_said_is_no_bare_text() {
     assert!(said > 150, "{said}: what says something is not found any more");
     assert_eq!(bare, Vec::<String>::new());
 }
+
+/// What the window puts together and is no message: the file, and why.
+const NO_MESSAGES: [(&str, &str); 3] = [
+    ("app/gui/src/graph/picture/svg.rs", "elements of SVG"),
+    ("app/gui/src/mcl/printer.rs", "commands of a shell"),
+    ("app/gui/src/screens/start.rs", "a command to be typed"),
+];
+
+/// Units and symbols, which are the same in each language.
+const SYMBOLS: [&str; 10] = ["ms", "kB", "MB", "min", "Hz", "baud", "div", "counts", "Ms", "Ctrl"];
+
+/// Prose has words with spaces between them or a value; a key, a target or a file's name has none, and a figure only its unit.
+fn is_prose(text: &str) -> bool {
+    let mut is_outside = true;
+    let outside = |letter: &char| {
+        is_outside = *letter != '{' && (is_outside || *letter == '}');
+        is_outside
+    };
+    let words: String = text.chars().filter(outside).collect();
+    let mut words =
+        words.split(|letter: char| !letter.is_alphabetic()).filter(|word| word.chars().count() > 1);
+    text.contains(' ') && words.any(|word| !SYMBOLS.contains(&word))
+}
+
+/// What `format!` and its kin are given first, in the shipped part of a source: their text, without the breaks of its lines.
+fn formats(source: &str) -> Vec<String> {
+    let shipped = source.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
+    let of = |name: &str| shipped.split(name).skip(1).filter_map(literal).collect::<Vec<_>>();
+    ["format!(", "format_args!(", "write!(", "writeln!("].into_iter().flat_map(of).collect()
+}
+
+/// The text with which the arguments begin, after whatever is written to.
+fn literal(arguments: &str) -> Option<String> {
+    let (before, rest) = arguments.split_once('"')?;
+    let is_target =
+        |letter: char| letter.is_alphanumeric() || letter.is_whitespace() || "_.&,*".contains(letter);
+    if !before.chars().all(is_target) {
+        return None;
+    }
+    let mut text = String::new();
+    let mut letters = rest.chars();
+    loop {
+        match letters.next()? {
+            '"' => return Some(text),
+            '\\' => match letters.next()? {
+                '\n' => letters = letters.as_str().trim_start().chars(),
+                escaped => text.extend(['\\', escaped]),
+            },
+            letter => text.push(letter),
+        }
+    }
+}
+
+#[test]
+fn what_the_window_shows_with_values_is_no_bare_text() {
+    let source = "let a = format!(\"sim:{key}\"); write!(f, \"{} of \\\n    {all}\", 1)";
+    assert_eq!(formats(source), ["sim:{key}", "{} of {all}"]);
+    assert!(
+        is_prose("{} of {all}")
+            && is_prose("Motor {motor}")
+            && !is_prose("{:.1} ms")
+            && !is_prose("{name}.json")
+    );
+    let is_shown = |path: &String| {
+        path.starts_with("app/gui/src/")
+            && !path.ends_with("messages.rs")
+            && !path.ends_with("tests.rs")
+            && !path.contains("/tests/")
+    };
+    let (mut bare, mut seen) = (Vec::new(), 0);
+    let mut excepted: Vec<&str> = NO_MESSAGES.iter().map(|(path, _)| *path).collect();
+    for path in workspace::rust_files().into_iter().filter(is_shown) {
+        let formats = formats(&workspace::read(&path));
+        seen += formats.len();
+        let prose: Vec<_> = formats.into_iter().filter(|text| is_prose(text)).collect();
+        match NO_MESSAGES.iter().any(|(other, _)| *other == path) {
+            true if !prose.is_empty() => excepted.retain(|other| *other != path),
+            true => {}
+            false => bare.extend(prose.into_iter().map(|text| format!("{path}: {text}"))),
+        }
+    }
+    assert!(seen > 200, "{seen}: what makes texts is not found any more");
+    assert_eq!(bare, Vec::<String>::new());
+    assert_eq!(excepted, Vec::<&str>::new(), "exceptions that are none any more");
+}

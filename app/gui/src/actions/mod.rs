@@ -4,6 +4,7 @@
 //! To add an action, add a row to the file of its menu. Nothing else has to know: the row says where it stands, which
 //! keys call it, when it can be done and why not, and which [`Command`] it is.
 
+use crate::actions::messages::ActionMessage;
 use crate::messages::WindowStatusMessage;
 use std::borrow::Cow;
 use std::sync::OnceLock;
@@ -58,6 +59,7 @@ mod edit;
 mod file;
 mod graph;
 mod help;
+pub mod messages;
 mod program;
 mod view;
 
@@ -270,7 +272,7 @@ fn connected(model: &Model) -> Ready {
 fn settings_idle(model: &Model) -> Ready {
     connected(model)?;
     match model.front.settings.running() {
-        Some(running) => Err(format!("Wait until Brushwork is done ({}).", running.name()).into()),
+        Some(running) => Err(ActionMessage::Busy { job: running.name().to_string() }.to_string().into()),
         None if model.front.general.holds_settings() => {
             Err("A calibration or a test uses the settings. End it first.".into())
         }

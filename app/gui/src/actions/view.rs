@@ -3,6 +3,7 @@
 use egui::{Key, ThemePreference};
 
 use super::{Action, Keys, Ready, always, ctrl, ctrl_shift, key, only, shift};
+use crate::actions::messages::ActionMessage;
 use crate::command::Command;
 use crate::model::{Model, Screen};
 
@@ -68,7 +69,7 @@ fn shows_traffic(model: &Model) -> Ready {
 
 fn there_is(model: &Model, screen: Screen) -> Ready {
     let name = model.front.family().name();
-    let why = format!("A controller like the {name} has no such screen as it is set.");
+    let why = ActionMessage::NoSuchScreen { name }.to_string();
     only(model.front.screens().contains(&screen), why)
 }
 

@@ -13,6 +13,7 @@ use crate::debugger::DebugAction;
 use crate::debugger::names::TextId;
 use crate::debugger::state::Source;
 use crate::graph::MarkKind;
+use crate::graph::messages::MarkMessage;
 use crate::mcl::{DocId, Document, MclAction};
 use crate::model::{ConnectionId, Screen};
 
@@ -157,7 +158,11 @@ impl App {
         let now_s = self.links.device(id).map_or(0.0, |device| device.now().as_secs_f64());
         if let Some(world) = self.links.get(id).and_then(|link| link.world.as_ref()) {
             world.set_pace(pace);
-            self.model.front.graph.mark(now_s, MarkKind::Note, format!("time {}", pace.name()));
+            self.model.front.graph.mark(
+                now_s,
+                MarkKind::Note,
+                MarkMessage::Pace { pace: pace.name() }.to_string(),
+            );
         }
     }
 }

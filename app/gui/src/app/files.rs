@@ -11,7 +11,7 @@ use super::App;
 use crate::family::Ability;
 use crate::frame::FRAME_INTERVAL;
 use crate::graph::files::OpenAs;
-use crate::messages::OpenFileMessage;
+use crate::messages::{NameMessage, OpenFileMessage};
 use crate::model::open_files::SettingsFile;
 use crate::model::{Screen, Sheet, Tab};
 use crate::tune::Loop;
@@ -74,8 +74,10 @@ impl App {
         let backups = self.parts.keeping.store().backups(None);
         let name = || path.file_name().map_or_else(String::new, |name| name.display().to_string());
         let backup = backups.iter().find(|backup| backup.path == path);
-        let title = backup
-            .map_or_else(|| format!("Profile {}", name()), |backup| format!("Backup {}", backup.title()));
+        let title = backup.map_or_else(
+            || NameMessage::Profile { name: name() }.to_string(),
+            |backup| NameMessage::Backup { title: backup.title() }.to_string(),
+        );
         self.show(Screen::GeneralSettings);
         self.model.files.settings = Some(SettingsFile::new(title, PathBuf::from(path), read));
         Ok(())

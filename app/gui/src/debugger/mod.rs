@@ -3,6 +3,7 @@
 //! It speaks to controllers that are simulated in this program, past the wire: the protocol has no word for any of it.
 
 pub mod action;
+pub mod messages;
 pub mod names;
 mod needs;
 mod panel;

@@ -7,6 +7,8 @@ use super::action::DebugAction;
 use super::state::Debugging;
 use super::watches::remove_ui;
 use crate::command::{Command, Commands};
+use crate::debugger::messages::DebuggerMessage;
+use crate::messages::NameMessage;
 use crate::theme::Palette;
 use crate::widgets::{heading_ui, text_field_ui};
 
@@ -30,11 +32,11 @@ pub fn stack_ui(ui: &mut Ui, debug: &mut Debugging, commands: &mut Commands) {
 /// "add a = 1, b = 2: line 12".
 fn frame_text(debug: &Debugging, frame: &Frame) -> String {
     let line = frame.line;
-    let Some(program) = debug.program() else { return format!("line {line}") };
+    let Some(program) = debug.program() else { return DebuggerMessage::AtLine { line }.to_string() };
     let Some(arguments) = frame.arguments.as_ref().filter(|_| frame.entered_at > 0) else {
         let name = label_at(debug, frame.entered_at).unwrap_or("main program");
         let name = if frame.entered_at == 0 { "main program" } else { name };
-        return format!("{name}: line {line}");
+        return DebuggerMessage::In { name: name.to_string(), line }.to_string();
     };
     let given = arguments.iter().map(|argument| {
         let Some(cell) = argument.cell else { return argument.value.to_string() };
@@ -44,8 +46,8 @@ fn frame_text(debug: &Debugging, frame: &Frame) -> String {
     });
     let given = given.collect::<Vec<_>>().join(", ");
     let name = label_at(debug, frame.entered_at).unwrap_or("subroutine");
-    let space = if given.is_empty() { "" } else { " " };
-    format!("{name}{space}{given}: line {line}")
+    let name = if given.is_empty() { name.to_owned() } else { format!("{name} {given}") };
+    DebuggerMessage::In { name, line }.to_string()
 }
 
 fn label_at(debug: &Debugging, at: u32) -> Option<&str> {
@@ -68,17 +70,18 @@ fn breakpoints_ui(ui: &mut Ui, debug: &mut Debugging, commands: &mut Commands) {
     for (line, terms) in &mut debug.breakpoints {
         let state = states.iter().find(|state| state.wanted.line == *line);
         ui.horizontal(|ui| {
-            if remove_ui(ui, &format!("Remove breakpoint at line {line}")) {
+            if remove_ui(ui, &DebuggerMessage::RemoveBreakpoint { line: *line }.to_string()) {
                 gone = Some(*line);
             }
             let mut on = !terms.disabled;
-            if ui.checkbox(&mut on, format!("Line {line}")).changed() {
+            if ui.checkbox(&mut on, NameMessage::Line { line: *line }.to_string()).changed() {
                 terms.disabled = !on;
             }
             let reported = match state {
                 Some(state) if state.line.is_none() => "no code from here on".to_owned(),
                 Some(state) if state.line != Some(*line) => {
-                    format!("at line {}, {} ×", state.line.unwrap_or_default(), state.hits)
+                    DebuggerMessage::Moved { line: state.line.unwrap_or_default(), hits: state.hits }
+                        .to_string()
                 }
                 Some(state) => format!("{} ×", state.hits),
                 None => String::new(),
@@ -94,9 +97,9 @@ fn breakpoints_ui(ui: &mut Ui, debug: &mut Debugging, commands: &mut Commands) {
             ui.add_space(22.0);
             let from = DragValue::new(&mut terms.from_hit).range(1..=1_000_000).prefix("from hit ");
             let response = ui.add(from).on_hover_text("It stops from this time on that it is reached");
-            let name = format!("First hit of breakpoint at line {line}");
+            let name = DebuggerMessage::FirstHit { line: *line }.to_string();
             ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name));
-            let name = format!("Condition of breakpoint at line {line}");
+            let name = DebuggerMessage::Condition { line: *line }.to_string();
             text_field_ui(ui, &mut terms.condition, &name, "if, e.g. i > 3");
         });
         if let Some(why) = &terms.wrong {

@@ -1,5 +1,6 @@
 //! What the debugger of one link knows and wants: breakpoints, watches, what the script was like when it stood here last.
 
+use crate::graph::messages::MarkMessage;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -184,7 +185,7 @@ impl Debugging {
         let was = self.view.as_ref().map(|before| (before.is_paused, before.reason.clone()));
         let happened = match was {
             Some((was_paused, _)) if was_paused != view.is_paused => Some(if view.is_paused {
-                format!("script paused at line {}", view.line)
+                MarkMessage::ScriptPaused { line: view.line }.to_string()
             } else {
                 "script goes on".into()
             }),
@@ -421,7 +422,7 @@ pub const NO_NAMES: &str =
 fn ended(reason: &Reason) -> Happened {
     match reason {
         Reason::Ended => Some("script ended".to_owned()),
-        Reason::Faulted(fault) => Some(format!("script failed at line {}", fault.line)),
+        Reason::Faulted(fault) => Some(MarkMessage::ScriptFailed { line: fault.line }.to_string()),
         Reason::Stopped(_) => Some("script stopped".to_owned()),
         _ => None,
     }

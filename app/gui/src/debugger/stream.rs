@@ -6,6 +6,7 @@ use super::action::DebugAction;
 use super::needs::why_not;
 use super::terminal::{LineEnd, Terminal};
 use crate::command::{Command, Commands};
+use crate::debugger::messages::DebuggerMessage;
 use crate::model::Model;
 use crate::theme::Palette;
 use crate::widgets::{choice_ui, keep_space};
@@ -35,7 +36,11 @@ pub fn terminal_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         let response = ui.add(Label::new(RichText::new(shown).monospace()).wrap().selectable(true));
         let received = text.to_owned();
         response.widget_info(|| {
-            egui::WidgetInfo::labeled(egui::Role::Label, true, format!("Script output: {received}"))
+            egui::WidgetInfo::labeled(
+                egui::Role::Label,
+                true,
+                DebuggerMessage::Output { received: received.clone() }.to_string(),
+            )
         });
     });
     ui.add_enabled_ui(why.is_none(), |ui| input_ui(ui, terminal, waiting, commands));
@@ -45,7 +50,7 @@ fn head_ui(ui: &mut Ui, terminal: &mut Terminal) {
     ui.horizontal_wrapped(|ui| {
         ui.label("Shows");
         let name = |stream: Option<u32>| {
-            stream.map_or("all streams".to_owned(), |stream| format!("stream {stream}"))
+            stream.map_or("all streams".to_owned(), |stream| DebuggerMessage::Stream { stream }.to_string())
         };
         let streams: Vec<Option<u32>> = std::iter::once(None).chain((0..STREAMS).map(Some)).collect();
         let list = ComboBox::from_id_salt("terminal stream");
@@ -85,6 +90,6 @@ fn input_ui(ui: &mut Ui, terminal: &mut Terminal, waiting: usize, commands: &mut
         (Some(why), _) => drop(ui.label(RichText::new(why.to_string()).color(palette.error))),
         (None, 0) => {}
         (None, 1) => drop(ui.weak("1 byte waits for GETS.")),
-        (None, waiting) => drop(ui.weak(format!("{waiting} bytes wait for GETS."))),
+        (None, waiting) => drop(ui.weak(DebuggerMessage::BytesWait { waiting }.to_string())),
     }
 }

@@ -9,6 +9,7 @@ use brushwork_script::vm::{Memory, element};
 use egui::{CollapsingHeader, ComboBox, Label, RichText, Sense, Ui};
 
 use super::state::{Debugging, RegisterGroup};
+use crate::debugger::messages::DebuggerMessage;
 use crate::theme::Palette;
 use crate::widgets::{choice_ui, heading_ui};
 
@@ -105,7 +106,7 @@ fn variable_ui(
             chosen = row_ui(ui, &row).or(chosen);
         }
         if length > LISTED {
-            ui.weak(format!("{} more: watch an element by its index.", length - LISTED));
+            ui.weak(DebuggerMessage::MoreElements { more: length - LISTED }.to_string());
         }
         chosen
     });
@@ -129,9 +130,13 @@ fn row_ui(ui: &mut Ui, row: &Row<'_>) -> Option<(String, String)> {
         let response = ui.add(Label::new(value).sense(Sense::click()).truncate());
         let state = if *changed { ", changed" } else { "" };
         response.widget_info(|| {
-            egui::WidgetInfo::labeled(egui::Role::Button, true, format!("{place} is {text}{state}"))
+            egui::WidgetInfo::labeled(
+                egui::Role::Button,
+                true,
+                DebuggerMessage::Is { place: place.clone(), value: text.clone(), state }.to_string(),
+            )
         });
-        response.on_hover_text(format!("{hint}. Click to set it to something else")).clicked()
+        response.on_hover_text(DebuggerMessage::ClickToSet { hint: hint.to_string() }.to_string()).clicked()
     };
     let scope = ui.scope(|ui| {
         ui.spacing_mut().interact_size.y = ROW_HEIGHT;

@@ -7,6 +7,7 @@ use super::action::DebugAction;
 use super::state::Debugging;
 use super::values::show_ui;
 use crate::command::{Command, Commands};
+use crate::debugger::messages::DebuggerMessage;
 use crate::theme::Palette;
 use crate::widgets::{heading_ui, text_field_ui};
 
@@ -26,11 +27,11 @@ pub fn watches_ui(ui: &mut Ui, debug: &mut Debugging, commands: &mut Commands) {
             None => ("not known yet".to_owned(), false),
         };
         ui.horizontal(|ui| {
-            let name = format!("Remove watch {}", row.text);
+            let name = DebuggerMessage::RemoveWatch { watch: row.text.clone() }.to_string();
             if remove_ui(ui, &name) {
                 removed = Some(index);
             }
-            show_ui(ui, &format!("Form of watch {}", row.text), &mut row.show);
+            show_ui(ui, &DebuggerMessage::FormOfWatch { watch: row.text.clone() }.to_string(), &mut row.show);
             if is_wide {
                 value_ui(ui, &row.text, &text, is_wrong);
             }

@@ -2,6 +2,7 @@
 
 use super::files::Stopping;
 use super::{LiveGraph, MarkKind, TriggerMode};
+use crate::graph::messages::MarkMessage;
 
 /// One thing to do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,7 +119,7 @@ impl LiveGraph {
                 let number =
                     self.live.track.marks.iter().filter(|mark| mark.kind == MarkKind::Note).count() + 1;
                 let at_s = self.live.newest_s();
-                self.mark(at_s, MarkKind::Note, format!("Note {number}"));
+                self.mark(at_s, MarkKind::Note, MarkMessage::Note { number }.to_string());
             }
             GraphAction::KeepRun => self.keep_run(),
             GraphAction::ForgetRuns => self.runs.clear(),

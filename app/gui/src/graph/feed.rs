@@ -1,5 +1,7 @@
 //! What the link tells the graph: samples with their own times, and events that become marks.
 
+use crate::graph::messages::MarkMessage;
+use crate::messages::NameMessage;
 use brushwork_link::device::{Drive, DriveCommand, Event, Reading, Sample};
 use brushwork_values::Motor;
 
@@ -41,7 +43,9 @@ impl LiveGraph {
                 self.mark(sent_at.as_secs_f64(), MarkKind::Drive, drive_text(drive));
             }
             Event::Stopped(report) => self.mark(report.written_at.as_secs_f64(), MarkKind::Stop, "Stop"),
-            Event::Armed { scope, .. } => self.mark(now_s, MarkKind::Arm, format!("Armed for {scope}")),
+            Event::Armed { scope, .. } => {
+                self.mark(now_s, MarkKind::Arm, NameMessage::ArmedFor { scope: *scope }.to_string());
+            }
             Event::Disarmed(reason) => self.mark(now_s, MarkKind::Arm, reason.to_string()),
             Event::Connected(identity) => {
                 identity.title().clone_into(&mut self.files.device);
@@ -64,12 +68,16 @@ fn drive_text(drive: &Drive) -> String {
 
 fn command_text(command: &DriveCommand) -> String {
     match command {
-        DriveCommand::Duty { duty, .. } => format!("duty {:.1} %", duty * 100.0 + 0.0),
-        DriveCommand::Speed { speed_counts_per_s, .. } => format!("speed {speed_counts_per_s} counts/s"),
-        DriveCommand::Distance { distance_counts, speed_counts_per_s, .. } => {
-            format!("distance {distance_counts} counts at {speed_counts_per_s} counts/s")
+        DriveCommand::Duty { duty, .. } => MarkMessage::Duty { percent: duty * 100.0 + 0.0 }.to_string(),
+        DriveCommand::Speed { speed_counts_per_s, .. } => {
+            MarkMessage::Speed { speed: *speed_counts_per_s }.to_string()
         }
-        DriveCommand::Position { position_counts, .. } => format!("position {position_counts} counts"),
+        DriveCommand::Distance { distance_counts, speed_counts_per_s, .. } => {
+            MarkMessage::Distance { distance: *distance_counts, speed: *speed_counts_per_s }.to_string()
+        }
+        DriveCommand::Position { position_counts, .. } => {
+            MarkMessage::Position { position: *position_counts }.to_string()
+        }
     }
 }
 

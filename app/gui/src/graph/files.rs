@@ -2,6 +2,7 @@
 //!
 //! Whatever takes time does so on a thread of its own; what becomes of it is said by `LiveGraph::poll_files`.
 
+use crate::graph::messages::GraphBarMessage;
 use crate::messages::{GraphMessage, WindowStatusMessage};
 use brushwork_link::Message;
 use std::collections::HashSet;
@@ -138,9 +139,11 @@ impl GraphFiles {
         let recording = self.recording.as_ref()?;
         let progress = recording.recorder.progress();
         let name = file_name(recording.recorder.path());
-        let mut text = format!("{name}: {} samples, {}", progress.samples, size_text(progress.bytes));
+        let mut text =
+            GraphBarMessage::Recording { name, samples: progress.samples, size: size_text(progress.bytes) }
+                .to_string();
         if progress.dropped > 0 {
-            text += &format!(", {} lost: the disk is too slow", progress.dropped);
+            text += &GraphBarMessage::Lost { lost: progress.dropped }.to_string();
         }
         Some(text)
     }
@@ -148,7 +151,13 @@ impl GraphFiles {
     /// What is being read, in a few words.
     pub fn loading_text(&self) -> Option<String> {
         let loading = self.loading.as_ref()?;
-        Some(format!("Reading {}: {} rows", loading.name, loading.rows.load(Ordering::Relaxed)))
+        Some(
+            GraphBarMessage::Reading {
+                name: loading.name.clone(),
+                rows: loading.rows.load(Ordering::Relaxed),
+            }
+            .to_string(),
+        )
     }
 
     pub fn give_up_loading(&mut self) {
@@ -255,7 +264,7 @@ fn file_name(path: &Path) -> String {
 
 fn size_text(bytes: u64) -> String {
     match bytes as f64 {
-        b if b < 1e3 => format!("{b:.0} bytes"),
+        b if b < 1e3 => GraphBarMessage::Bytes { bytes }.to_string(),
         b if b < 1e6 => format!("{:.1} kB", b / 1e3),
         b => format!("{:.1} MB", b / 1e6),
     }

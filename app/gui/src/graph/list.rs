@@ -9,6 +9,8 @@ use egui::{
 use super::action::GraphAction;
 use super::picture::draw::color_of;
 use super::{LiveGraph, Sheet};
+use crate::graph::messages::GraphBarMessage;
+use crate::messages::ButtonMessage;
 use crate::theme::{self, Palette};
 use crate::widgets::readout::NO_VALUE;
 
@@ -57,7 +59,7 @@ fn swatch_ui(ui: &mut Ui, sheet: &Sheet, index: usize) -> Response {
     let palette = Palette::of(ui);
     let channel = &sheet.channels[index];
     let (rect, response) = ui.allocate_exact_size(vec2(SWATCH + 8.0, ROW_HEIGHT), Sense::click());
-    let label = format!("Show {}", channel.info.label);
+    let label = ButtonMessage::Show { what: channel.info.label.clone() }.to_string();
     response.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, channel.shown, &label));
     let square = egui::Rect::from_center_size(rect.center(), vec2(SWATCH, SWATCH));
     let color = color_of(sheet, palette, index);
@@ -121,7 +123,13 @@ fn selected_ui(ui: &mut Ui, graph: &mut LiveGraph) {
     let Some(channel) = sheet.channels.get(selected) else { return };
     let decimals = channel.scale.decimals();
     let (low, high) = (channel.scale.low + 0.0, channel.scale.high + 0.0);
-    let text = format!("{} {low:.decimals$} to {high:.decimals$} {}", channel.info.label, channel.info.unit);
+    let text = GraphBarMessage::Scale {
+        label: channel.info.label.clone(),
+        low: format!("{low:.decimals$}"),
+        high: format!("{high:.decimals$}"),
+        unit: channel.info.unit.clone(),
+    }
+    .to_string();
     ui.horizontal(|ui| {
         color_ui(ui, sheet, selected);
         ui.add(egui::Label::new(egui::RichText::new(text).small()).truncate());
@@ -170,7 +178,7 @@ fn color_ui(ui: &mut Ui, sheet: &mut Sheet, channel: usize) {
         for row in 0..4 {
             ui.horizontal(|ui| {
                 for place in row * 6..row * 6 + 6 {
-                    let name = format!("Colour {}", place + 1);
+                    let name = GraphBarMessage::Colour { number: place + 1 }.to_string();
                     if dot_ui(ui, palette.traces[place], &name).clicked() {
                         sheet.channels[channel].color = Some(place);
                         ui.close();

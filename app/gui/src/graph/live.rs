@@ -8,6 +8,7 @@ use super::runs::{Align, Run};
 use super::series::GAP;
 use super::track::ChannelInfo;
 use super::{Mark, MarkKind, Sheet, Track, TriggerMode, TriggerSource};
+use crate::graph::messages::GraphBarMessage;
 use brushwork_link::Message;
 
 /// A channel that was read in each of this many samples and then in as many not has lost data.
@@ -201,7 +202,7 @@ impl LiveGraph {
         let track = sheet.track.cut(start_s, end_s);
         if !track.history.is_empty() {
             let number = self.runs.len() + 1;
-            self.runs.push(Run::new(format!("Kept run {number}"), track));
+            self.runs.push(Run::new(GraphBarMessage::KeptRun { number }.to_string(), track));
         }
     }
 

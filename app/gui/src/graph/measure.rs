@@ -7,6 +7,7 @@ use super::cursors::{Cursors, Measure};
 use super::live::LiveGraph;
 use super::picture::{axes, draw};
 use super::sheet::{ChannelView, Sheet};
+use crate::graph::messages::GraphBarMessage;
 use crate::theme::Palette;
 
 const ROW: f32 = 17.0;
@@ -88,7 +89,10 @@ fn row_ui(ui: &mut Ui, sheet: &Sheet, channel: usize) {
     let color = draw::color_of(sheet, Palette::of(ui), channel);
     let label = ui.label(RichText::new(format!("{} {}", channel + 1, view.info.label)).small().color(color));
     let unit = view.info.unit.as_str();
-    label.on_hover_text(format!("{} readings between the cursors", measure.count));
+    label.on_hover_text(match measure.count {
+        1 => GraphBarMessage::OneReading.to_string(),
+        count => GraphBarMessage::Readings { count }.to_string(),
+    });
     for (head, text) in HEADS[1..].iter().zip(texts(view, &measure)) {
         let response = ui.label(RichText::new(&text).small().monospace());
         let spoken = format!("{} {head}: {text} {unit}", view.info.label);

@@ -17,6 +17,7 @@ pub mod load;
 pub mod marks;
 pub mod measure;
 pub mod memo;
+pub mod messages;
 pub mod moments;
 pub mod panel;
 pub mod picture;

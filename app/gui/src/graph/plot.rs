@@ -24,6 +24,7 @@ use super::picture::draw::{self, Curve, Scene};
 use super::picture::frame::{AXIS_WIDTH, FLAGS, Frame, GUTTER, RIGHT, TIMES};
 use super::picture::{self, axes, paint};
 use super::{Cursors, LiveGraph, Scale, Sheet, TriggerMode};
+use crate::graph::messages::PlotMessage;
 use crate::theme::Palette;
 
 /// What the keys do while the plot has focus.
@@ -312,8 +313,8 @@ fn notice_ui(ui: &Ui, graph: &LiveGraph, frame: &Frame) {
     let sheet = graph.sheet();
     let text = if let Some(opened) = &graph.opened {
         match opened.left_out {
-            0 => format!("RECORDING  {}", opened.name),
-            rows => format!("RECORDING  {} · its oldest {rows} rows are left out", opened.name),
+            0 => PlotMessage::Opened { name: opened.name.clone() }.to_string(),
+            rows => PlotMessage::OpenedInPart { name: opened.name.clone(), rows }.to_string(),
         }
     } else if sheet.track.history.is_empty() {
         "No sample yet".to_owned()
@@ -583,17 +584,17 @@ fn spoken(graph: &LiveGraph) -> String {
     let shown = if shown.is_empty() { "no channel".to_owned() } else { shown.join(", ") };
     let span = axes::span_text(sheet.span_s());
     let mut text = match &graph.opened {
-        Some(opened) => format!("Graph of the recording {}, {span}: {shown}", opened.name),
-        None if sheet.is_held() => format!("Graph, paused, of {span}: {shown}"),
-        None if sheet.shot_s().is_some() => format!("Graph of {span} at the trigger: {shown}"),
-        None => format!("Live graph of the last {span}: {shown}"),
+        Some(opened) => PlotMessage::OfRecording { name: opened.name.clone(), span, shown }.to_string(),
+        None if sheet.is_held() => PlotMessage::Paused { span, shown }.to_string(),
+        None if sheet.shot_s().is_some() => PlotMessage::AtTrigger { span, shown }.to_string(),
+        None => PlotMessage::Live { span, shown }.to_string(),
     };
     let (start_s, end_s) = sheet.window();
     if let Some(mark) = sheet.track.marks.between(start_s, end_s).next_back() {
-        text += &format!(". Last mark: {}", mark.text);
+        text += &PlotMessage::LastMark { mark: mark.text.clone() }.to_string();
     }
     if sheet.cursors.on {
-        text += &format!(". Cursor {} is moved by the arrow keys", Cursors::NAMES[sheet.cursors.active]);
+        text += &PlotMessage::Cursor { name: Cursors::NAMES[sheet.cursors.active] }.to_string();
     }
     text
 }

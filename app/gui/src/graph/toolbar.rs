@@ -16,6 +16,7 @@ use super::runs::Align;
 use super::sheet::SPANS_S;
 use super::trigger::{Edge, TriggerMode, TriggerSettings, TriggerSource};
 use crate::command::{Command, Commands};
+use crate::graph::messages::GraphBarMessage;
 use crate::theme::Palette;
 use crate::widgets::{Numeric, choice_ui, text_field_ui};
 
@@ -84,7 +85,7 @@ pub fn status_ui(ui: &mut Ui, graph: &LiveGraph, poll: PollRate) {
         ui.label(RichText::new(text).small().weak());
         let rest = [
             graph.sheet().trigger_state().map(str::to_owned),
-            graph.files.recording_text().map(|text| format!("Recording {text}")),
+            graph.files.recording_text().map(|text| GraphBarMessage::RecordingTo { what: text }.to_string()),
             graph.files.loading_text(),
         ];
         for text in rest.into_iter().flatten() {
@@ -98,11 +99,11 @@ pub fn status_ui(ui: &mut Ui, graph: &LiveGraph, poll: PollRate) {
 fn rate_text(graph: &LiveGraph, poll: PollRate) -> String {
     let asked = match poll {
         PollRate::Off => "not read".to_owned(),
-        PollRate::Every(time) => format!("{:.0} asked", 1.0 / time.as_secs_f64()),
+        PollRate::Every(time) => GraphBarMessage::Asked { hz: 1.0 / time.as_secs_f64() }.to_string(),
         PollRate::Fastest => "as fast as it goes".to_owned(),
     };
     let reached = graph.rate.reached_hz().map_or_else(|| "–".to_owned(), |hz| format!("{hz:.1}"));
-    let mut text = format!("{reached} samples/s, {asked}");
+    let mut text = GraphBarMessage::Rate { reached, asked }.to_string();
     for (count, word) in [(graph.rate.late, "late"), (graph.rate.lost, "lost")] {
         if count > 0 {
             text += &format!(" · {count} {word}");
@@ -164,7 +165,7 @@ fn menu(ui: &mut Ui, icon: Icon, label: &str, contents: impl FnOnce(&mut Ui)) {
 
 fn trigger_ui(ui: &mut Ui, graph: &mut LiveGraph) {
     let mode = graph.sheet().trigger.mode();
-    menu(ui, Icon::Trigger, &format!("Trigger: {}", mode.word()), |ui| {
+    menu(ui, Icon::Trigger, &GraphBarMessage::TriggerMode { mode: mode.word() }.to_string(), |ui| {
         ui.horizontal(|ui| {
             for each in TriggerMode::ALL {
                 let hint = match each {
@@ -208,7 +209,13 @@ fn trigger_settings_ui(ui: &mut Ui, graph: &mut LiveGraph) {
         if ui.selectable_label(on_channel, label_of(watched)).clicked() {
             settings.source = TriggerSource::Channel(watched);
         }
-        if watched != selected && ui.selectable_label(false, format!("Use {}", label_of(selected))).clicked()
+        if watched != selected
+            && ui
+                .selectable_label(
+                    false,
+                    GraphBarMessage::Use { channel: label_of(selected).to_string() }.to_string(),
+                )
+                .clicked()
         {
             settings.source = TriggerSource::Channel(selected);
         }
@@ -245,8 +252,13 @@ fn numeric_ui(
 ) {
     ui.horizontal(|ui| {
         crate::widgets::label::fixed_label_ui(ui, label, 120.0);
-        Numeric::new(&format!("Trigger {}", label.to_lowercase()), unit, range, (decimals, step, 110.0))
-            .ui(ui, value);
+        Numeric::new(
+            &GraphBarMessage::TriggerField { field: label.to_lowercase() }.to_string(),
+            unit,
+            range,
+            (decimals, step, 110.0),
+        )
+        .ui(ui, value);
     });
 }
 
@@ -379,7 +391,7 @@ fn open_ui(ui: &mut Ui, graph: &mut LiveGraph) {
         });
     }
     if let Some(opened) = &graph.opened {
-        ui.label(format!("Looking at {}", opened.name));
+        ui.label(GraphBarMessage::LookingAt { name: opened.name.clone() }.to_string());
         if ui.button("Close recording").clicked() {
             graph.close_recording();
         }
@@ -403,7 +415,7 @@ fn runs_ui(ui: &mut Ui, graph: &mut LiveGraph) {
     for (number, run) in graph.runs.iter_mut().enumerate() {
         ui.horizontal(|ui| {
             ui.checkbox(&mut run.shown, format!("{}: {}", number + 1, run.name));
-            let name = format!("Shift of run {}", number + 1);
+            let name = GraphBarMessage::Shift { number: number + 1 }.to_string();
             let any = f64::NEG_INFINITY..=f64::INFINITY;
             Numeric { name: &name, unit: "s", range: any, decimals: 3, step: 0.01, width: 80.0 }
                 .ui(ui, &mut run.shift_s);
@@ -433,7 +445,7 @@ fn rate_ui(ui: &mut Ui, poll: PollRate, commands: &mut Commands) {
 fn poll_text(poll: PollRate) -> String {
     match poll {
         PollRate::Off => "not read".to_owned(),
-        PollRate::Every(time) => format!("every {} ms", time.as_millis()),
+        PollRate::Every(time) => GraphBarMessage::Every { milliseconds: time.as_millis() }.to_string(),
         PollRate::Fastest => "as fast as it goes".to_owned(),
     }
 }

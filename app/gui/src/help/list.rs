@@ -2,6 +2,7 @@
 
 use egui::{Atom, Button, Panel, Role, ScrollArea, Ui, WidgetInfo};
 
+use crate::messages::NameMessage;
 use crate::model::help::Help;
 
 const LIST_WIDTH: f32 = 262.0;
@@ -21,7 +22,7 @@ pub fn list_ui(ui: &mut Ui, entries: &[Entry], help: &mut Help) {
     let found: Vec<&Entry> = entries.iter().filter(fits).collect();
     let frame = egui::Frame::new().inner_margin(egui::Margin { right: 8, ..Default::default() });
     Panel::left("entries").resizable(false).exact_size(LIST_WIDTH).frame(frame).show(ui, |ui| {
-        ui.weak(format!("{} of {}", found.len(), entries.len()));
+        ui.weak(NameMessage::Of { number: found.len(), all: entries.len() }.to_string());
         let height = ui.spacing().interact_size.y;
         ScrollArea::vertical().auto_shrink([false; 2]).show_rows(ui, height, found.len(), |ui, shown| {
             for entry in &found[shown] {

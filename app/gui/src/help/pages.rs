@@ -3,6 +3,7 @@
 use egui::Ui;
 
 use crate::actions::{self, Keys, Menu};
+use crate::messages::NameMessage;
 use crate::widgets::label::fixed_label_ui;
 
 /// Numbered, in the order a person does them.
@@ -112,18 +113,20 @@ fn table_ui(ui: &mut Ui, title: &str, rows: &[(&str, &str, &str)]) {
 }
 
 pub fn about_ui(ui: &mut Ui) {
-    ui.heading(format!("Brushwork {}", env!("CARGO_PKG_VERSION")));
+    ui.heading(NameMessage::Program { version: env!("CARGO_PKG_VERSION") }.to_string());
     ui.label(
         "Configures, drives and tunes brushed-DC motor controllers over their serial protocols. It carries simulated \
          controllers, so that everything in it can be used and learned with no hardware on the table.",
     );
     ui.add_space(6.0);
-    ui.label(format!(
-        "Licence: {}. System: {} on {}.",
-        env!("CARGO_PKG_LICENSE"),
-        std::env::consts::OS,
-        std::env::consts::ARCH
-    ));
+    ui.label(
+        NameMessage::System {
+            licence: env!("CARGO_PKG_LICENSE"),
+            system: std::env::consts::OS,
+            processor: std::env::consts::ARCH,
+        }
+        .to_string(),
+    );
     ui.label("Speaks packet serial with the MCP and RoboClaw families, firmware generations 1 to 4.");
     ui.add_space(6.0);
     ui.weak("The simulated controllers follow the manuals and what public clients put on the wire. Where the manuals are \

@@ -1,5 +1,6 @@
 //! The text as a screen reader has it: a field of several lines, the lines in view as runs of text, and the selection in them.
 
+use crate::mcl::messages::PanelMessage;
 use std::ops::Range;
 
 use egui::emath::TSTransform;
@@ -18,13 +19,15 @@ pub fn describe(
     rows: Range<usize>,
     origin: Pos2,
 ) {
-    let label = format!("Program {}", document.title());
+    let label = PanelMessage::Program { title: document.title().to_string() }.to_string();
     response.widget_info(|| WidgetInfo::labeled(Role::MultilineTextInput, true, &label));
     let line = document.caret_line();
     let reported = ui.ctx().accesskit_node_builder(response.id, |node| {
         node.set_label(label.as_str());
         node.set_value(document.text.line(line).into_owned());
-        node.set_description(format!("Line {} of {}", line + 1, document.text.line_count()));
+        node.set_description(
+            PanelMessage::LineOf { line: line + 1, lines: document.text.line_count() }.to_string(),
+        );
     });
     // Nobody listens: the lines need not be laid out once more.
     if reported.is_none() {

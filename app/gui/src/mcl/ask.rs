@@ -6,6 +6,7 @@ use super::saving::{mcl_files, pdf_files};
 use super::sheet::PathField;
 use super::{Editor, MclAction, Sheet};
 use crate::files::FileKind;
+use crate::mcl::messages::PanelMessage;
 use crate::widgets::text_field::text_field_ui;
 
 const WIDTH: f32 = 460.0;
@@ -77,7 +78,7 @@ fn sheet_ui(ui: &mut Ui, sheet: &mut Sheet, titles: &[String], is_new: bool, act
             "Rename"
         }
         Sheet::Close { .. } => {
-            ui.label(format!("There is unsaved text in {}.", titles.join(", ")));
+            ui.label(PanelMessage::Unsaved { titles: titles.join(", ") }.to_string());
             "Save and close"
         }
     };

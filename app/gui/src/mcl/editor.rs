@@ -9,6 +9,7 @@ use super::panel::Panel;
 use super::printer::{Printing, Spooler};
 use super::threads::Services;
 use super::{Completion, DocId, Document, Sheet};
+use crate::mcl::messages::PanelMessage;
 use crate::model::message::Gravity;
 
 /// What is shown of a program besides its text.
@@ -133,7 +134,7 @@ impl Editor {
     pub fn open_new(&mut self, text: &str) -> DocId {
         let id = DocId(self.next);
         self.next += 1;
-        let names = (1..).map(|number| format!("Untitled {number}"));
+        let names = (1..).map(|number| PanelMessage::Untitled { number }.to_string());
         let mut free = names.filter(|name| !self.documents.iter().any(|document| document.untitled == *name));
         let name = free.next().unwrap_or_default();
         self.documents.push(Document::new(id, name, text));

@@ -1,5 +1,7 @@
 //! Find and replace: words, case, regular expressions. Matches are those of the whole program and are counted.
 
+use crate::mcl::messages::PanelMessage;
+use crate::messages::NameMessage;
 use std::ops::Range;
 
 use regex::{NoExpand, Regex, RegexBuilder};
@@ -30,7 +32,7 @@ impl Query {
         built.map(Some).map_err(|error| {
             let why = error.to_string();
             let why = why.lines().last().unwrap_or_default().trim_start_matches("error: ").to_owned();
-            format!("This is no regular expression: {why}.")
+            PanelMessage::NoExpression { why }.to_string()
         })
     }
 }
@@ -93,9 +95,9 @@ impl Find {
         match (here, count) {
             _ if self.query.text.is_empty() => String::new(),
             (_, 0) => "None found".to_owned(),
-            (Some(here), _) => format!("{} of {count}", here + 1),
+            (Some(here), _) => NameMessage::Of { number: here + 1, all: count }.to_string(),
             (None, 1) => "1 found".to_owned(),
-            (None, _) => format!("{count} found"),
+            (None, _) => NameMessage::Found { count }.to_string(),
         }
     }
 

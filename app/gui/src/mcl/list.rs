@@ -6,6 +6,7 @@ use brushwork_script::diagnostic::Severity;
 
 use super::problems::Problem;
 use super::{Document, MclAction};
+use crate::mcl::messages::PanelMessage;
 use crate::model::indicator::IndicatorState;
 use crate::theme::Palette;
 
@@ -37,7 +38,13 @@ fn row_ui(ui: &mut Ui, document: &Document, problem: &Problem, actions: &mut Vec
     let palette = Palette::of(ui);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
     let line = document.text.line_of(problem.range.start) + 1;
-    let spoken = format!("{} {} in line {line}: {}", problem.word(), problem.code, problem.message);
+    let spoken = PanelMessage::Problem {
+        word: problem.word(),
+        code: problem.code.to_string(),
+        line,
+        message: problem.message.to_string(),
+    }
+    .to_string();
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &spoken));
     if response.hovered() || response.has_focus() {
         ui.painter().rect_filled(rect, 2.0, palette.raised);

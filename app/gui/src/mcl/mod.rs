@@ -27,6 +27,7 @@ pub mod journal;
 pub mod language;
 mod list;
 pub mod marks;
+pub mod messages;
 pub mod moves;
 mod notices;
 mod paint;

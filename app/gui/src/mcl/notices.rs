@@ -4,6 +4,7 @@ use egui::{Frame, Label, Margin, Stroke, Ui, vec2};
 
 use super::document::OnDisk;
 use super::{Editor, MclAction};
+use crate::mcl::messages::PanelMessage;
 use crate::model::indicator::IndicatorState;
 use crate::theme::Palette;
 
@@ -11,7 +12,7 @@ pub fn notices_ui(ui: &mut Ui, editor: &Editor, actions: &mut Vec<MclAction>) {
     if !editor.left.is_empty() {
         let programs: Vec<&str> =
             editor.left.iter().flat_map(|left| &left.programs).map(|kept| kept.title.as_str()).collect();
-        let text = format!("Unsaved text from an earlier time was found: {}.", programs.join(", "));
+        let text = PanelMessage::UnsavedFound { programs: programs.join(", ") }.to_string();
         let choices = [
             ("Restore", MclAction::SettleLeft { restore: true }),
             ("Discard", MclAction::SettleLeft { restore: false }),
@@ -22,8 +23,7 @@ pub fn notices_ui(ui: &mut Ui, editor: &Editor, actions: &mut Vec<MclAction>) {
     match front.on_disk {
         OnDisk::Same => {}
         OnDisk::Changed => {
-            let text =
-                format!("{} was changed by another program, and there is unsaved text here.", front.title());
+            let text = PanelMessage::ChangedAndUnsaved { title: front.title().to_string() }.to_string();
             let choices = [
                 ("Load the file", MclAction::SettleChange { id, load: true }),
                 ("Keep this text", MclAction::SettleChange { id, load: false }),
@@ -31,7 +31,7 @@ pub fn notices_ui(ui: &mut Ui, editor: &Editor, actions: &mut Vec<MclAction>) {
             bar_ui(ui, &text, &choices, actions);
         }
         OnDisk::Gone => {
-            let text = format!("The file of {} is gone. Save writes it again.", front.title());
+            let text = PanelMessage::Gone { title: front.title().to_string() }.to_string();
             bar_ui(ui, &text, &[("Keep this text", MclAction::SettleChange { id, load: false })], actions);
         }
     }

@@ -7,6 +7,7 @@ use egui::{
 
 use super::complete::{Completion, ROWS};
 use super::language::Hover;
+use crate::mcl::messages::PanelMessage;
 use crate::theme::Palette;
 
 const WIDTH: f32 = 380.0;
@@ -35,7 +36,7 @@ fn list_ui(ui: &mut Ui, list: &Completion) -> Option<usize> {
     for (index, entry) in list.entries.iter().enumerate().skip(first).take(ROWS) {
         let (rect, response) = ui.allocate_exact_size(vec2(WIDTH, ROW_HEIGHT), Sense::click());
         let chosen = index == list.chosen;
-        let spoken = format!("Word {}", entry.word);
+        let spoken = PanelMessage::Word { word: entry.word.to_string() }.to_string();
         response.widget_info(|| WidgetInfo::selected(Role::ListBoxOption, true, chosen, &spoken));
         let palette = Palette::of(ui);
         if chosen || response.hovered() {
@@ -76,7 +77,7 @@ pub fn hover_ui(ui: &mut Ui, hover: &Hover, value: Option<&str>) {
     }
     ui.label(&help.text);
     if let Some(value) = value {
-        ui.strong(format!("Now: {value}"));
+        ui.strong(PanelMessage::ValueNow { value: value.to_string() }.to_string());
     }
     for fact in &help.facts {
         ui.label(RichText::new(fact).weak().small());

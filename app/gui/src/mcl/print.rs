@@ -8,6 +8,7 @@ use pdf_writer::{Content, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
 use super::moves::TAB_CELLS;
 use super::paint::color_of;
 use super::typeface::{FontFace, Typeface};
+use crate::mcl::messages::PrintMessage;
 use crate::theme::Palette;
 use brushwork_core::keep::today;
 
@@ -126,7 +127,7 @@ impl Pen<'_, '_> {
     fn head(&mut self, title: &str, date: &str, page: usize, pages: usize) {
         let palette = Palette::of_theme(egui::Theme::Light);
         self.text(MARGIN, MARGIN, title, palette.text);
-        let right = format!("{date}   page {page} of {pages}");
+        let right = PrintMessage::Page { date: date.to_string(), page, pages }.to_string();
         let width = right.chars().count() as f32 * SIZE * ADVANCE;
         self.text(PAGE.0 - MARGIN - width, MARGIN, &right, palette.weak_text);
     }

@@ -7,6 +7,7 @@ use egui::{Label, ProgressBar, RichText, Ui};
 
 use crate::command::{Command, Commands};
 use crate::debugger::DebugAction;
+use crate::model::messages::ScriptStateMessage;
 use crate::model::{Arming, IndicatorState, Model};
 use crate::screens::stream::stream_ui;
 use crate::theme::Palette;
@@ -96,11 +97,11 @@ fn running(model: &Model) -> String {
     let view = front.worlds.as_ref().and_then(|views| views.get(front.world_unit)?.script.clone());
     match view.map(|view| view.run) {
         Some(ScriptRun::Running { line }) if front.script_is_paused() => {
-            format!("The debugger holds a script in line {line}. ")
+            ScriptStateMessage::Held { line }.to_string()
         }
-        Some(ScriptRun::Running { line }) => format!("A script runs, line {line}. "),
-        Some(ScriptRun::Ended { line }) => format!("The script ended in line {line}. "),
-        Some(ScriptRun::Faulted { line, what }) => format!("The script broke off in line {line}: {what}. "),
+        Some(ScriptRun::Running { line }) => ScriptStateMessage::Runs { line }.to_string(),
+        Some(ScriptRun::Ended { line }) => ScriptStateMessage::Ended { line }.to_string(),
+        Some(ScriptRun::Faulted { line, what }) => ScriptStateMessage::BrokeOff { line, what }.to_string(),
         Some(_) => String::new(),
         None if front.watch.script_runs == Some(true) => "A script was started. ".to_owned(),
         None => String::new(),

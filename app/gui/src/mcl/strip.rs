@@ -7,6 +7,7 @@ use egui::{Align, ComboBox, FontId, Layout, Role, Sense, Ui, WidgetInfo, vec2};
 
 use super::disk::{Encoding, LineEnds};
 use super::{Document, MclAction};
+use crate::mcl::messages::PanelMessage;
 use crate::theme::Palette;
 use crate::widgets::choice_ui;
 
@@ -62,8 +63,8 @@ fn place_ui(ui: &mut Ui, document: &Document) {
 fn place_text(document: &Document) -> String {
     let (line, column) = (document.caret_line() + 1, document.text.column(document.caret.head) + 1);
     match document.text.slice(document.caret.range()).chars().count() {
-        0 => format!("Line {line}, column {column}"),
-        count => format!("{count} selected, line {line}"),
+        0 => PanelMessage::Caret { line, column }.to_string(),
+        count => PanelMessage::Selected { count, line }.to_string(),
     }
 }
 
@@ -72,7 +73,7 @@ fn syntax_ui(ui: &mut Ui, document: &Document) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
     let Some(hint) = document.syntax() else { return };
     let palette = Palette::of(ui);
-    let spoken = format!("Syntax: {}", hint.word.syntax);
+    let spoken = PanelMessage::Syntax { syntax: hint.word.syntax.to_string() }.to_string();
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
     let mut job = LayoutJob::default();
     for (text, here) in parts(&hint) {

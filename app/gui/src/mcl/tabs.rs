@@ -5,6 +5,8 @@ use egui::{
 };
 
 use super::{Document, Editor, MclAction};
+use crate::mcl::messages::PanelMessage;
+use crate::messages::ButtonMessage;
 use crate::theme::Palette;
 
 const HEIGHT: f32 = 28.0;
@@ -30,7 +32,7 @@ fn tab_ui(ui: &mut Ui, document: &Document, in_front: bool, actions: &mut Vec<Mc
         ui.fonts_mut(|fonts| fonts.layout_no_wrap(title.clone(), font.clone(), palette.text).size().x);
     let (rect, response) = ui.allocate_exact_size(vec2(width + 40.0 + CLOSE_WIDTH, HEIGHT), Sense::click());
     let state = if modified { ", not saved" } else { "" };
-    let spoken = format!("Tab {title}{state}");
+    let spoken = PanelMessage::Tab { title: title.to_string(), state }.to_string();
     response.widget_info(|| WidgetInfo::selected(Role::Tab, true, in_front, &spoken));
     let fill = if in_front { palette.ground } else { palette.panel };
     let ring =
@@ -64,7 +66,7 @@ fn close_ui(ui: &Ui, tab: Rect, document: &Document, title: &str, actions: &mut 
     let palette = Palette::of(ui);
     let at = Rect::from_center_size(pos2(tab.right() - 12.0, tab.center().y), vec2(17.0, 17.0));
     let response = ui.interact(at, ui.scope_id().with(("close", document.id())), Sense::click());
-    let name = format!("Close {title}");
+    let name = ButtonMessage::Close { title: title.to_string() }.to_string();
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
     if response.hovered() || response.has_focus() {
         ui.painter().rect_filled(at, 3.0, palette.raised);

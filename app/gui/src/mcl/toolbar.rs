@@ -4,6 +4,7 @@ use egui::{Button, RichText, Role, Ui, WidgetInfo};
 
 use crate::actions;
 use crate::command::Commands;
+use crate::mcl::messages::PanelMessage;
 use crate::model::Model;
 
 /// The buttons: an action of the table, and what its button reads. A line stands between groups.
@@ -41,7 +42,7 @@ fn button_ui(ui: &mut Ui, id: &str, reads: &str, model: &Model, commands: &mut C
     let on = action.is_on.map(|is_on| is_on(model));
     let response = ui
         .add_enabled(ready.is_ok(), Button::selectable(on.unwrap_or(false), RichText::new(reads).size(12.5)));
-    let name = format!("Toolbar {}", action.title.trim_end_matches('…'));
+    let name = PanelMessage::Toolbar { action: action.title.trim_end_matches('…').to_string() }.to_string();
     response.widget_info(|| match on {
         Some(on) => WidgetInfo::selected(Role::Button, ready.is_ok(), on, &name),
         None => WidgetInfo::labeled(Role::Button, ready.is_ok(), &name),

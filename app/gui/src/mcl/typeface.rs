@@ -1,5 +1,6 @@
 //! The window's fixed font in a PDF: the letters that a text uses, embedded so that they look alike everywhere and can be copied.
 
+use crate::mcl::messages::PrintMessage;
 use egui::FontDefinitions;
 use egui::epaint::text::FontData;
 use pdf_writer::types::{CidFontType, FontFlags, SystemInfo, UnicodeCmap};
@@ -31,7 +32,7 @@ impl FontFace {
     /// The font, with no letter used yet.
     pub fn typeface(&self) -> Result<Typeface<'_>, String> {
         let font = FontRef::from_index((*self.0.font).as_ref(), self.0.index)
-            .map_err(|error| format!("the window's fixed font cannot be read ({error})"))?;
+            .map_err(|error| PrintMessage::FontUnread { error: error.to_string() }.to_string())?;
         let (charmap, used) = (font.charmap(), GlyphRemapper::new());
         Ok(Typeface { data: &self.0, font, charmap, used, letters: BTreeMap::new() })
     }
@@ -64,7 +65,7 @@ impl Typeface<'_> {
     pub fn embed(self, pdf: &mut Pdf, font: Ref, numbers: &mut Ref) -> Result<(), String> {
         let [descendant, descriptor, file, names] = [(); 4].map(|()| numbers.bump());
         let bytes = subset((*self.data.font).as_ref(), self.data.index, &self.used)
-            .map_err(|error| format!("the window's fixed font cannot be embedded ({error})"))?;
+            .map_err(|error| PrintMessage::FontNotEmbedded { error: error.to_string() }.to_string())?;
         pdf.stream(file, &bytes);
         let mut letters = UnicodeCmap::new(Name(b"Letters"), IDENTITY);
         self.letters.iter().for_each(|(glyph, letter)| letters.pair(*glyph, *letter));

@@ -40,6 +40,7 @@ use crate::debugger::Debugging;
 use crate::family::{self, Family, Own, Sliders};
 use crate::graph::LiveGraph;
 use crate::messages::JobMessage;
+use crate::model::messages::ScriptStateMessage;
 use crate::tune::Tuning;
 
 /// Which connection, for as long as the window is open.
@@ -509,9 +510,9 @@ impl Connection {
         }
         match (self.script_runs(), self.script_line()) {
             (Some(true), Some(Some(line))) if self.script_is_paused() => {
-                Some(format!("Script paused, line {line}"))
+                Some(ScriptStateMessage::LinePaused { line }.to_string())
             }
-            (Some(true), Some(Some(line))) => Some(format!("Script running, line {line}")),
+            (Some(true), Some(Some(line))) => Some(ScriptStateMessage::LineRunning { line }.to_string()),
             (Some(true), _) => Some("Script running".to_owned()),
             (None, _) if self.family().autoruns(&|key| self.known(key)) => {
                 Some("Script may run (autorun)".to_owned())

@@ -3,6 +3,7 @@
 use super::connection::{Connection, ConnectionId, place_of};
 use super::simulated::Simulated;
 use crate::family::{self, Family};
+use crate::messages::FirmwareMessage;
 use brushwork_link::transport::TargetError;
 use brushwork_link::transport::target::LineOptions;
 use brushwork_link::{Addresses, ConnectTarget, Failure, FamilyChoice, PortInfo};
@@ -238,7 +239,7 @@ impl Devices {
 pub fn described(port: &PortInfo) -> String {
     match (&port.product, port.is_usb) {
         (Some(product), _) if port.is_loader() => {
-            format!("{product}: waits for firmware, see Device > Firmware")
+            FirmwareMessage::PortWaits { product: product.clone() }.to_string()
         }
         (Some(product), _) => product.clone(),
         (None, true) => "USB".to_owned(),

@@ -1,5 +1,6 @@
 //! The profile generator of the screens that drive: what is set, what runs, and the figures of its last steps.
 
+use crate::model::messages::MeasuredMessage;
 use brushwork_core::messages::ProfilePlanMessage;
 use brushwork_link::device::{ArmScope, Event, QueuedJob};
 use brushwork_values::Motor;
@@ -129,7 +130,11 @@ impl Generator {
 pub fn duration_text(legs: &[Leg]) -> String {
     let seconds = total_time(legs).as_secs_f64();
     let is_open = legs.iter().any(|leg| !matches!(leg, Leg::Hold { .. }));
-    if is_open { format!("takes at least {seconds:.1} s") } else { format!("takes {seconds:.1} s") }
+    if is_open {
+        MeasuredMessage::TakesAtLeast { seconds }.to_string()
+    } else {
+        MeasuredMessage::Takes { seconds }.to_string()
+    }
 }
 
 #[cfg(test)]

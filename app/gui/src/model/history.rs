@@ -10,7 +10,9 @@ use std::time::Duration;
 use brushwork_link::device::{DisarmReason, Event, Identity, StatusReport, StopReport};
 
 use crate::family::{self, ActiveIndicator, Family};
+use crate::messages::NameMessage;
 use crate::model::indicator::IndicatorState;
+use crate::model::messages::HistoryMessage;
 
 /// Entries kept; the oldest go first.
 pub const KEPT: usize = 2000;
@@ -168,12 +170,21 @@ impl History {
                 }
                 let unit = self.units.entry(identity.address).or_default();
                 unit.identity = Some(identity.clone());
-                let text = format!("Connected to {} at {}", identity.title(), identity.port);
+                let text = HistoryMessage::Connected {
+                    unit: identity.title().to_string(),
+                    port: identity.port.clone(),
+                }
+                .to_string();
                 self.push(self.now, Some(identity.address), Kind::Connected, text);
             }
             Event::Status(report) => self.note_status(report),
             Event::Armed { address, scope, .. } => {
-                self.push(self.now, Some(*address), Kind::Armed, format!("Armed for {scope}"));
+                self.push(
+                    self.now,
+                    Some(*address),
+                    Kind::Armed,
+                    NameMessage::ArmedFor { scope: *scope }.to_string(),
+                );
             }
             Event::Disarmed(reason) => {
                 let by_fault = matches!(
@@ -267,7 +278,7 @@ impl History {
     fn note_stop(&mut self, report: &StopReport) {
         let confirmed = report.confirmed();
         let latency_ms = report.latency().as_secs_f64() * 1000.0;
-        let mut text = format!("Stop on the wire after {latency_ms:.1} ms, ");
+        let mut text = HistoryMessage::Stopped { latency_ms }.to_string();
         text += if confirmed { "confirmed" } else { "NOT confirmed" };
         for unit in &report.units {
             for driver in &unit.still_driven_by {

@@ -27,6 +27,7 @@ pub mod jobs;
 pub mod link;
 pub mod loop_settings;
 pub mod message;
+pub mod messages;
 pub mod open_files;
 pub mod palette;
 pub mod path;

@@ -1,5 +1,6 @@
 //! The guided measurement of QPPS on the PWM screen: what is set, what runs, and what was found.
 
+use crate::model::messages::MeasuredMessage;
 use brushwork_link::Message;
 use std::time::Duration;
 
@@ -69,25 +70,30 @@ impl QppsPanel {
 
 /// What was found, line by line.
 pub fn lines(measured: &Measured) -> Vec<String> {
-    let mut lines = vec![format!(
-        "{}: QPPS {:.0} counts/s · forward {:.0}, reverse {:.0} · spread {:.2} %",
-        measured.motor,
-        measured.qpps(),
-        measured.forward.speed.counts_per_s.abs(),
-        measured.reverse.speed.counts_per_s.abs(),
-        measured.spread() * 100.0,
-    )];
+    let mut lines = vec![
+        MeasuredMessage::Qpps {
+            motor: measured.motor,
+            qpps: measured.qpps(),
+            forward: measured.forward.speed.counts_per_s.abs(),
+            reverse: measured.reverse.speed.counts_per_s.abs(),
+            spread_percent: measured.spread() * 100.0,
+        }
+        .to_string(),
+    ];
     let volts = (measured.forward.power.volts + measured.reverse.power.volts) / 2.0;
     let amps = measured.forward.power.amps.abs().max(measured.reverse.power.amps.abs());
-    lines.push(format!(
-        "Battery {volts:.1} V under load, {:.1} V at rest · up to {amps:.2} A · went {:.0} and {:.0} counts",
-        measured.rest_volts, measured.forward.travel_counts, measured.reverse.travel_counts,
-    ));
+    lines.push(
+        MeasuredMessage::Power {
+            volts,
+            rest_volts: measured.rest_volts,
+            amps,
+            forward: measured.forward.travel_counts,
+            reverse: measured.reverse.travel_counts,
+        }
+        .to_string(),
+    );
     if measured.asymmetry() > ASYMMETRY {
-        lines.push(format!(
-            "The directions differ by {:.0} %: something drags or pulls. The mean is offered.",
-            measured.asymmetry() * 100.0
-        ));
+        lines.push(MeasuredMessage::Asymmetry { percent: measured.asymmetry() * 100.0 }.to_string());
     }
     lines
 }

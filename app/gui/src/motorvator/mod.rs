@@ -1,6 +1,7 @@
 //! MotorVator V3 in the window: its facts, the state of its screens, and the screens.
 
 mod action;
+pub mod messages;
 pub mod model;
 pub mod screens;
 

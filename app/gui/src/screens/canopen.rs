@@ -9,6 +9,7 @@ use brushwork_core::session::bus::BusList;
 use egui::{Button, ComboBox, Context, DragValue, Grid, Rect, RichText, Ui, Window, vec2};
 
 use crate::command::{Command, Commands};
+use crate::messages::ButtonMessage;
 use crate::model::Model;
 use crate::model::canopen::ADAPTER_BAUD_RATES;
 use crate::widgets::{choice_ui, heading_ui};
@@ -107,7 +108,7 @@ fn bus_ui(ui: &mut Ui, bus: &Monitor, is_open: bool, is_starting: bool, commands
             ui.label(view.heartbeat_text());
             ui.label(view.who_text());
             if view.can_be_started() {
-                let title = format!("Start {}", view.node);
+                let title = ButtonMessage::Start { what: view.node.to_string() }.to_string();
                 let help = "Sends the NMT command \"start\" to this node alone.";
                 if ui.add_enabled(!is_starting, Button::new(title)).on_hover_text(help).clicked() {
                     commands.push(Command::StartNode(view.node));

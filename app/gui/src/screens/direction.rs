@@ -6,7 +6,9 @@ use brushwork_values::Motor;
 use egui::{Button, Grid, Label, Pos2, RichText, Role, Sense, Shape, Stroke, Ui, WidgetInfo, vec2};
 
 use crate::command::{Command, Commands};
+use crate::messages::MotorFieldMessage;
 use crate::model::{Arming, IndicatorState, Model};
+use crate::screens::messages::SettingMessage;
 use crate::theme::{self, Palette};
 
 const DUTIES: [Channel; 2] = [Channel::M1_PWM, Channel::M2_PWM];
@@ -33,8 +35,8 @@ fn row_ui(ui: &mut Ui, model: &Model, motor: Motor, commands: &mut Commands) {
     ui.label(motor.to_string());
     let duty = read(DUTIES[motor.index()]);
     let speed = read(SPEEDS[motor.index()]);
-    turning_ui(ui, &format!("{motor} duty"), duty, (LEAST_DUTY_PERCENT, 1, "%"));
-    turning_ui(ui, &format!("{motor} encoder"), speed, (LEAST_SPEED, 0, "counts/s"));
+    turning_ui(ui, &MotorFieldMessage::Duty { motor }.to_string(), duty, (LEAST_DUTY_PERCENT, 1, "%"));
+    turning_ui(ui, &MotorFieldMessage::Encoder { motor }.to_string(), speed, (LEAST_SPEED, 0, "counts/s"));
     let (state, text) = match front.path.turning.agrees(motor) {
         Some(true) => (IndicatorState::Ok, "They agree."),
         Some(false) => {
@@ -101,10 +103,10 @@ fn reverse_ui(
     let held = unit.on_controller(&key);
     let is_free = model.front.link.arming == Arming::Disarmed && !model.front.settings.is_busy();
     let is_reversed = held == Some(SettingValue::Bool(true));
-    let label = format!("{text} of {motor}");
+    let label = SettingMessage::OfMotor { what: text.to_owned(), motor }.to_string();
     let button = ui.add_enabled(is_free && held.is_some(), Button::new(text).selected(is_reversed));
     button.widget_info(|| WidgetInfo::selected(Role::Button, is_free, is_reversed, &label));
-    let hint = format!("{} Written to RAM at once and read back; save it to keep it.", row.help);
+    let hint = SettingMessage::WrittenAtOnce { help: row.help.to_string() }.to_string();
     let button = button
         .on_hover_text(hint)
         .on_disabled_hover_text("Disarm first: a loop may not be turned round while it runs");

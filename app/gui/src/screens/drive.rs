@@ -12,7 +12,9 @@ use crate::command::{Command, Commands};
 use crate::family::{Ability, Family};
 use crate::focus::{self, Region, region_ui};
 use crate::keys::stop_words;
+use crate::messages::{MotorFieldMessage, NameMessage};
 use crate::model::{Arming, Direction, IndicatorState, LinkView, Model, Setpoints};
+use crate::screens::messages::ScreenMessage;
 use crate::theme::Palette;
 use crate::tune::guide::guide_ui;
 use crate::widgets::jog::{self, jog_ui};
@@ -114,7 +116,7 @@ pub fn arm_ui(ui: &mut Ui, scope: ArmScope, link: &LinkView, family: &dyn Family
             ui.vertical(|ui| {
                 ui.spacing_mut().item_spacing.y = 1.0;
                 let (risk, what) = risk(scope, family.motors(link.identity()).len());
-                ui.label(format!("{risk} {} stops {what}.", stop_words(ui.ctx())));
+                ui.label(ScreenMessage::Stops { risk, keys: stop_words(ui.ctx()), what }.to_string());
                 let text = RichText::new(fallback_text(link.arming)).small().color(palette.weak_text);
                 ui.add(Label::new(text).truncate());
             });
@@ -148,11 +150,9 @@ pub fn notices_ui(ui: &mut Ui, link: &LinkView) {
 /// What happens if this program dies.
 fn fallback_text(arming: Arming) -> String {
     match arming {
-        Arming::Armed { controller_timeout: Some(timeout), .. } => format!(
-            "If this program falls silent, the controller stops the motors by itself after {:.1} s. \
-             Leaving this screen disarms.",
-            timeout.as_secs_f64()
-        ),
+        Arming::Armed { controller_timeout: Some(timeout), .. } => {
+            ScreenMessage::FallsSilent { seconds: timeout.as_secs_f64() }.to_string()
+        }
         Arming::Armed { .. } => "Leaving this screen disarms.".to_owned(),
         Arming::Asked(_) => "Asking the controller …".to_owned(),
         Arming::Disarmed => "Disarmed: nothing on this screen moves a motor.".to_owned(),
@@ -172,18 +172,22 @@ pub fn motor_ui(
     let size = vec2(ui.available_width(), ROW_HEIGHT);
     ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
         let is_only = model.front.motors().len() == 1;
-        let name = if is_only { "Motor".to_owned() } else { format!("Motor {}", motor.index() + 1) };
+        let name = if is_only {
+            "Motor".to_owned()
+        } else {
+            NameMessage::Motor { number: motor.index() + 1 }.to_string()
+        };
         let label = Label::new(name.as_str()).selectable(false);
         ui.add_sized(vec2(62.0, ROW_HEIGHT), label);
         let slider_width = ui.available_width() - output.width;
         let armed = model.front.link.arming.is_armed_for(output.scope);
         ui.add_enabled_ui(armed && !model.front.is_guided(), |ui| {
             let jog = |ui: &mut Ui, direction: Direction| {
-                let name = format!(
-                    "{} jog {}",
-                    if is_only { "Motor".to_owned() } else { motor.to_string() },
-                    direction.word()
-                );
+                let name = MotorFieldMessage::Jog {
+                    motor: if is_only { "Motor".to_owned() } else { motor.to_string() },
+                    direction: direction.word(),
+                }
+                .to_string();
                 let hint = "Runs the motor while it is held: by mouse, or by Enter while it has the focus";
                 jog_ui(ui, &name, direction == Direction::Forward, hint).then_some(direction)
             };

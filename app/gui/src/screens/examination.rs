@@ -12,8 +12,10 @@ use egui::{
 use crate::command::{Command, Commands};
 use crate::model::examination::{ExaminationAction, ExaminationPanel};
 use crate::model::{Gravity, Model};
+use crate::screens::messages::ScreenMessage;
 use crate::theme::Palette;
 use crate::widgets::{choice_ui, heading_ui, text_field_ui};
+use brushwork_core::messages::ExamineMessage;
 
 /// Lines of the report that are shown at once, at least.
 const REPORT_LINES: usize = 12;
@@ -82,7 +84,7 @@ fn ask_ui(
 ) {
     let steps = ExaminationPanel::steps(identity);
     if steps.is_empty() {
-        ui.weak(format!("There are no questions for a {} yet.", identity.title()));
+        ui.weak(ExamineMessage::NoQuestions { unit: identity.title().to_owned() }.to_string());
         return;
     }
     for (step, is_open) in steps {
@@ -135,7 +137,7 @@ fn step_ui(ui: &mut Ui, panel: &mut ExaminationPanel, step: &'static Step, is_op
 
 fn running_ui(ui: &mut Ui, panel: &ExaminationPanel, commands: &mut Commands) {
     let Some((number, of, title, text, share)) = panel.progress() else { return };
-    heading_ui(ui, &format!("Step {number} of {of}: {title}"));
+    heading_ui(ui, &ScreenMessage::StepOf { number, of, title }.to_string());
     ui.add(ProgressBar::new(share).show_percentage().desired_height(18.0));
     ui.label(capital(&text));
     if ui.button("Cancel").on_hover_text("What was changed is put back").clicked() {

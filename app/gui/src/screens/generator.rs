@@ -6,8 +6,10 @@ use egui::{Button, ComboBox, Grid, Label, RichText, Ui, vec2};
 
 use super::progress::progress_ui;
 use crate::command::{Command, Commands, GuidedAction};
+use crate::messages::NameMessage;
 use crate::model::Model;
 use crate::model::generator::{duration_text, mode_of};
+use crate::screens::messages::ScreenMessage;
 use crate::theme::{self, Palette};
 use crate::widgets::{Numeric, choice_ui};
 use brushwork_core::motion::player::JudgedStep;
@@ -40,7 +42,9 @@ pub fn generator_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         let palette = Palette::of(ui);
         let (text, color) = match plan {
             Ok(legs) if is_armed => (duration_text(&legs), palette.weak_text),
-            Ok(legs) => (format!("{}. Arm this screen to run it.", duration_text(&legs)), palette.weak_text),
+            Ok(legs) => {
+                (ScreenMessage::ArmToRun { duration: duration_text(&legs) }.to_string(), palette.weak_text)
+            }
             Err(why) => (why.to_string(), palette.warning),
         };
         ui.add(Label::new(RichText::new(text).small().color(color)).truncate());
@@ -140,7 +144,7 @@ fn step_ui(ui: &mut Ui, step: &JudgedStep, mode: Mode) {
         Mode::Duty | Mode::Speed => ("counts/s", "counts·s"),
     };
     let mut cells = vec![
-        format!("{} to {}", step.motor, step.text),
+        NameMessage::To { from: step.motor.to_string(), to: step.text.clone() }.to_string(),
         format!("{:.0} → {:.0} {unit}", step.start + 0.0, step.end + 0.0),
     ];
     match &step.figures {

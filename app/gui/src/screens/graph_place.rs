@@ -7,6 +7,7 @@ use crate::focus::{Region, region_ui};
 use crate::graph::{GraphAction, panel};
 use crate::keys;
 use crate::model::{Connection, Model};
+use crate::screens::messages::ScreenMessage;
 use crate::theme::Palette;
 use crate::widgets::stop;
 
@@ -36,7 +37,7 @@ pub fn detached_ui(ctx: &Context, model: &mut Model, commands: &mut Commands) {
         return;
     }
     let title = match &model.front.target {
-        Some(target) => format!("Brushwork graph: {target}"),
+        Some(target) => ScreenMessage::GraphOf { target: target.clone() }.to_string(),
         None => "Brushwork graph".to_owned(),
     };
     let builder = ViewportBuilder::default()

@@ -5,8 +5,10 @@ use brushwork_values::Motor;
 use egui::{Button, Grid, RichText, Ui, vec2};
 
 use crate::command::{Command, Commands};
+use crate::messages::NameMessage;
 use crate::model::loop_settings::{LoopView, number};
 use crate::model::{Column, Model, UnitSettings};
+use crate::screens::messages::{ScreenMessage, SettingMessage};
 use crate::theme::Palette;
 use crate::widgets::{NO_VALUE, Numeric};
 use brushwork_core::settings::counted;
@@ -39,11 +41,7 @@ pub fn loops_ui(ui: &mut Ui, model: &mut Model, columns: &'static [Column], comm
     ui.add_space(2.0);
     ui.horizontal_wrapped(|ui| buttons_ui(ui, (loops, unit, motors), columns, (is_free, is_busy), commands));
     for motor in torque_controlled(unit, columns) {
-        let text = format!(
-            "Motor {}: with L and R both other than 0 the controller switches from duty to current (torque) \
-             control.",
-            motor.index() + 1
-        );
+        let text = ScreenMessage::BecomesTorque { number: motor.index() + 1 }.to_string();
         ui.label(RichText::new(text).color(palette.warning));
     }
     if is_free && !is_busy && unit.is_known() && loops.wants_applying() {
@@ -59,7 +57,7 @@ fn torque_controlled(unit: &UnitSettings, columns: &[Column]) -> Vec<Motor> {
 
 /// True where something was edited.
 fn motor_row_ui(ui: &mut Ui, unit: &mut UnitSettings, motor: Motor, columns: &[Column]) -> bool {
-    ui.label(format!("Motor {}", motor.index() + 1));
+    ui.label(NameMessage::Motor { number: motor.index() + 1 }.to_string());
     // Each field is drawn, whichever is edited.
     let mut is_edited = false;
     for column in columns {
@@ -141,7 +139,7 @@ fn buttons_ui(
         _ if is_busy => "Asking the controller …".to_owned(),
         _ if !unit.is_known() => "Not read yet.".to_owned(),
         0 => "As the controller holds them.".to_owned(),
-        _ => format!("{} changed and not applied yet.", counted(edits)),
+        _ => SettingMessage::NotApplied { settings: counted(edits) }.to_string(),
     };
     ui.label(RichText::new(state).small().weak());
 }

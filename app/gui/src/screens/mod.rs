@@ -1,5 +1,6 @@
 //! The screens, one file each.
 
+use crate::screens::messages::ScreenMessage;
 use egui::{Align, Layout, RichText, Ui};
 
 use super::command::Commands;
@@ -20,6 +21,7 @@ pub(super) mod general;
 mod generator;
 pub(super) mod graph_place;
 mod loops;
+pub mod messages;
 pub mod offline;
 mod position;
 mod progress;
@@ -81,9 +83,9 @@ pub(super) fn nothing_ui(ui: &mut Ui, hint: &str) {
 pub(super) fn not_connected_text(phase: &Phase) -> String {
     match phase {
         Phase::Closed => "Not connected.".to_owned(),
-        Phase::Opening { target } => format!("Connecting to {target} …"),
-        Phase::Open { target } => format!("Looking for controllers at {target} …"),
-        Phase::Closing { target } => format!("Disconnecting from {target} …"),
+        Phase::Opening { target } => ScreenMessage::Connecting { target: target.clone() }.to_string(),
+        Phase::Open { target } => ScreenMessage::Looking { target: target.clone() }.to_string(),
+        Phase::Closing { target } => ScreenMessage::Disconnecting { target: target.clone() }.to_string(),
     }
 }
 

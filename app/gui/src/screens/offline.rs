@@ -6,6 +6,7 @@ use super::graph_place::graph_place_ui;
 use super::{not_connected_text, nothing_ui, settings_file, start, status};
 use crate::command::{Command, Commands};
 use crate::model::{Connection, IndicatorState, Model, Phase, Screen, Tab};
+use crate::screens::messages::ScreenMessage;
 use crate::theme::Palette;
 use crate::tune::{Loop, guide};
 
@@ -64,7 +65,11 @@ fn band_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             let since_s = now_s - *lost.noticed_s.get_or_insert(now_s);
             let ago = ago_text(since_s);
             ui.ctx().request_repaint_after(std::time::Duration::from_secs(1));
-            (IndicatorState::Error, palette.error, format!("Link lost {ago}. {}", lost.text))
+            (
+                IndicatorState::Error,
+                palette.error,
+                ScreenMessage::LinkLost { ago, why: lost.text.clone() }.to_string(),
+            )
         }
         None => (IndicatorState::Unknown, palette.line, not_connected_headline(front)),
     };
@@ -80,7 +85,8 @@ fn band_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         ui.horizontal(|ui| {
             if let Some(target) = target {
                 let hint = "Opens the same link again. Nothing is armed by it";
-                let connect = egui::Button::new(format!("Connect to {target} again"));
+                let connect =
+                    egui::Button::new(ScreenMessage::ConnectAgain { target: target.to_string() }.to_string());
                 if ui.add_enabled(is_closed, connect).on_hover_text(hint).clicked() {
                     commands.push(Command::ConnectTo(target));
                 }
@@ -108,9 +114,9 @@ fn not_connected_headline(front: &Connection) -> String {
 fn ago_text(since_s: f64) -> String {
     match since_s {
         s if s < 2.0 => "just now".to_owned(),
-        s if s < 120.0 => format!("{s:.0} s ago"),
-        s if s < 7200.0 => format!("{:.0} min ago", s / 60.0),
-        s => format!("{:.0} h ago", s / 3600.0),
+        s if s < 120.0 => ScreenMessage::SecondsAgo { seconds: s }.to_string(),
+        s if s < 7200.0 => ScreenMessage::MinutesAgo { minutes: s / 60.0 }.to_string(),
+        s => ScreenMessage::HoursAgo { hours: s / 3600.0 }.to_string(),
     }
 }
 

@@ -7,6 +7,7 @@ use egui::{Label, Ui};
 
 use super::drive::{Output, drive_ui, motor_ui, on_release_ui, options_ui, pace_ui};
 use crate::command::Commands;
+use crate::messages::MotorFieldMessage;
 use crate::model::position::PACE_RANGE;
 use crate::model::{Connection, Direction, Model, UnitSettings};
 use crate::widgets::{Numeric, Setpoint};
@@ -82,7 +83,7 @@ fn slider_ui(ui: &mut Ui, model: &mut Model, motor: Motor) {
     };
     // Where the motor is, until a hand asks for something.
     connection.position.setpoints.show(motor, connection.seen(motor).counts);
-    let name = format!("{motor} position");
+    let name = MotorFieldMessage::Position { motor }.to_string();
     let slider = Setpoint { name: &name, unit: "", range: low..=high, decimals: 0, step: 1.0 };
     let shown = connection.position.setpoints.values[motor.index()].clamp(low, high);
     let mut counts = shown;

@@ -4,6 +4,7 @@ use egui::{Button, Label, RichText, Ui};
 
 use super::progress::progress_ui;
 use crate::command::{Command, Commands, GuidedAction};
+use crate::messages::ButtonMessage;
 use crate::model::qpps::lines;
 use crate::model::{IndicatorState, Model};
 use crate::theme::Palette;
@@ -23,7 +24,7 @@ pub fn qpps_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         }
         let scope = model.screen.arm_scope();
         let is_armed = scope.is_some_and(|scope| model.front.link.arming.is_armed_for(scope));
-        let label = format!("Measure {}", model.front.qpps.motor);
+        let label = ButtonMessage::Measure { motor: model.front.qpps.motor }.to_string();
         let measure = ui.add_enabled(is_armed, Button::new(label));
         if measure.on_disabled_hover_text("Arm this screen first").clicked() {
             commands.push(Command::Guided(GuidedAction::MeasureQpps));
@@ -61,7 +62,7 @@ fn result_ui(ui: &mut Ui, model: &mut Model) {
             let lines = lines(measured);
             ui.horizontal(|ui| {
                 ui.label(&lines[0]);
-                let label = format!("Set QPPS of {}", measured.motor);
+                let label = ButtonMessage::SetQpps { motor: measured.motor }.to_string();
                 let hint = "Puts it into the settings beside L and R, where it is applied";
                 if ui.button(label).on_hover_text(hint).clicked() {
                     taken_over = Some((measured.motor, measured.qpps()));

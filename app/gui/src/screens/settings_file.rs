@@ -12,6 +12,7 @@ use crate::command::{Command, Commands};
 use crate::focus::{self, Region, region_ui};
 use crate::model::open_files::{OpenFiles, SettingsFile};
 use crate::model::{IndicatorState, Model};
+use crate::screens::messages::SettingsFileMessage;
 use crate::theme::Palette;
 use crate::widgets::heading_ui;
 use crate::widgets::text_field::text_field_ui;
@@ -52,16 +53,22 @@ fn file_ui(ui: &mut Ui, file: &mut SettingsFile, has_backups: bool) -> bool {
         close = ui.button(back).clicked();
     });
     let profile = &file.profile;
-    let place = if profile.unit.is_empty() { String::new() } else { format!(" at {}", profile.unit) };
+    let place = if profile.unit.is_empty() {
+        String::new()
+    } else {
+        SettingsFileMessage::At { unit: profile.unit.clone() }.to_string()
+    };
     let note = if profile.note.is_empty() { String::new() } else { format!(", {}", profile.note) };
-    let of = format!(
-        "Of {}{place}, address {}, firmware {} ({}), read {}{note}.",
-        profile.subject.model.name,
-        profile.address,
-        profile.firmware,
-        profile.subject.generation,
-        profile.date_text()
-    );
+    let of = SettingsFileMessage::Of {
+        model: profile.subject.model.name,
+        place,
+        address: profile.address,
+        firmware: profile.firmware.clone(),
+        generation: profile.subject.generation.to_string(),
+        read: profile.date_text(),
+        note,
+    }
+    .to_string();
     text_ui(ui, &of);
     ui.weak(file.path.display().to_string());
     for note in &file.notes {
@@ -74,11 +81,9 @@ fn file_ui(ui: &mut Ui, file: &mut SettingsFile, has_backups: bool) -> bool {
         ui.allocate_ui(vec2(SEARCH_WIDTH, ui.spacing().interact_size.y), |ui| {
             text_field_ui(ui, &mut file.search, "Search settings", "Search");
         });
-        let differs = format!("Only what differs from the factory ({})", file.changed());
+        let differs = SettingsFileMessage::OnlyDiffering { count: file.changed() }.to_string();
         ui.checkbox(&mut file.only_changed, differs);
-        ui.weak(format!(
-            "{shown_count} of {all} settings. To write them, connect a controller and open the file again."
-        ));
+        ui.weak(SettingsFileMessage::Shown { shown: shown_count, all }.to_string());
     });
     rows_ui(ui, file);
     close
@@ -114,7 +119,7 @@ fn row_ui(ui: &mut Ui, row: &ListedSetting, palette: &Palette) -> egui::Response
     let cells = [RichText::new(&row.title), value, RichText::new(&row.default).weak()];
     let response = cells_ui(ui, cells);
     let rest = if differs {
-        format!(", the factory has {}", row.default)
+        SettingsFileMessage::FactoryHas { value: row.default.clone() }.to_string()
     } else {
         ", as the factory has it".to_owned()
     };
@@ -177,7 +182,7 @@ fn backups_ui(ui: &mut Ui, backups: &[Backup], notes: &BTreeMap<String, String>,
                         for backup in backups.iter().filter(|backup| backup.unit() == *unit) {
                             ui.label(backup.title());
                             let response = ui.add(Button::new("Open").small());
-                            let name = format!("Open backup {}", backup.title());
+                            let name = SettingsFileMessage::Open { title: backup.title() }.to_string();
                             response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
                             if response.clicked() {
                                 wanted = Some(backup.path.clone());

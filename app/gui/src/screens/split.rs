@@ -9,6 +9,7 @@ use egui::{
 use super::graph_place::graph_place_ui;
 use crate::command::Commands;
 use crate::model::{Model, Screen};
+use crate::screens::messages::ScreenMessage;
 use crate::theme::Palette;
 
 /// Part of the window's height that a graph has at first, in a window of the usual size.
@@ -107,7 +108,7 @@ fn bar_ui(ui: &mut Ui, split: &Split, model: &mut Model) {
     let part = (split.bottom - place.bottom()) / split.height;
     let response = response.on_hover_cursor(CursorIcon::ResizeVertical);
     response.widget_info(|| {
-        let percent = format!("Height of the graph: {:.0} %", part * 100.0);
+        let percent = ScreenMessage::GraphHeight { percent: part * 100.0 }.to_string();
         WidgetInfo::labeled(Role::Splitter, true, percent)
     });
     let moved = moved_by_keys(ui, &response) * KEY_STEP;

@@ -8,6 +8,7 @@ use egui::{Align, Button, Frame, Key, Layout, Margin, RichText, ScrollArea, Stro
 use crate::command::{Command, Commands};
 use crate::family::{self, Family};
 use crate::focus::{self, Region, region_ui};
+use crate::messages::ButtonMessage;
 use crate::model::devices::{Choice, described};
 use crate::model::{Model, Screen};
 use crate::theme::Palette;
@@ -48,7 +49,7 @@ fn ports_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let ports = model.devices.ports.clone();
     for port in &ports {
         ui.horizontal(|ui| {
-            if ui.button(format!("Connect to {}", port.name)).clicked() {
+            if ui.button(ButtonMessage::ConnectTo { target: port.name.clone() }.to_string()).clicked() {
                 model.devices.choice = Choice::Port(port.name.clone());
                 commands.push(Command::Connect);
             }
@@ -127,7 +128,11 @@ fn in_the_way_ui(ui: &mut Ui, ports: &[PortInfo]) {
         let Some(typed) = typed else { continue };
         ui.horizontal(|ui| {
             ui.code(&typed);
-            if ui.button("Copy").on_hover_text(format!("Copies {typed}")).clicked() {
+            if ui
+                .button("Copy")
+                .on_hover_text(ButtonMessage::Copies { text: typed.clone() }.to_string())
+                .clicked()
+            {
                 ui.ctx().copy_text(typed);
             }
         });
@@ -225,7 +230,7 @@ fn card_ui(ui: &mut Ui, family: &dyn Family, commands: &mut Commands) {
             ui.label(RichText::new(name).strong());
             ui.weak(family.family().label());
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                if ui.add(Button::new(format!("Open {name}"))).clicked() {
+                if ui.add(Button::new(ButtonMessage::Open { name: name.to_string() }.to_string())).clicked() {
                     commands.push(Command::ConnectTo(format!("sim:{key}")));
                 }
             });

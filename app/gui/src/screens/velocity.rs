@@ -7,6 +7,7 @@ use egui::{Label, Ui};
 
 use super::drive::{Output, drive_ui, motor_ui, on_release_ui, options_ui, pace_ui, sync_ui};
 use crate::command::Commands;
+use crate::messages::MotorFieldMessage;
 use crate::model::Model;
 use crate::model::velocity::ACCEL_RANGE_COUNTS_PER_S2;
 use crate::widgets::{Numeric, Setpoint};
@@ -56,7 +57,7 @@ fn speed_ui(ui: &mut Ui, model: &mut Model, motor: Motor) {
         ui.add(Label::new(why_no_slider(is_known)).truncate());
         return;
     }
-    let name = format!("{motor} speed");
+    let name = MotorFieldMessage::Speed { motor }.to_string();
     let slider = Setpoint { name: &name, unit: "", range: -reach..=reach, decimals: 0, step: 1.0 };
     let mut speed = model.front.velocity.setpoints.values[motor.index()];
     let moved = slider.ui(ui, &mut speed);

@@ -4,7 +4,9 @@ use brushwork_link::exchange::LinkStatistics;
 use egui::accesskit::Live;
 use egui::{Align2, Label, RichText, Role, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
+use crate::messages::LinkMessage;
 use crate::model::{History, IndicatorState, Model};
+use crate::shell::messages::ShellMessage;
 use crate::theme::{self, Palette};
 use crate::widgets::indicator;
 
@@ -38,7 +40,9 @@ fn announce_ui(ui: &mut Ui, history: &History) {
     let newest = history.from_newest(0);
     let text = newest.map_or_else(String::new, |entry| entry.text.clone());
     let is_grave = newest.is_some_and(|entry| entry.kind.state() >= IndicatorState::Warning);
-    response.widget_info(|| WidgetInfo::labeled(Role::Status, true, format!("Newest event: {text}")));
+    response.widget_info(|| {
+        WidgetInfo::labeled(Role::Status, true, ShellMessage::NewestEvent { text: text.clone() }.to_string())
+    });
     let live = if is_grave { Live::Assertive } else { Live::Polite };
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_live(live));
 }
@@ -49,7 +53,13 @@ fn link_ui(ui: &mut Ui, model: &Model) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
     let figures = model.is_connected().then_some(&model.front.link.statistics);
     let (first, second) = lines(figures);
-    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("Link: {first}, {second}")));
+    response.widget_info(|| {
+        WidgetInfo::labeled(
+            Role::Label,
+            true,
+            ShellMessage::Link { first: first.clone(), second: second.clone() }.to_string(),
+        )
+    });
     let font = egui::FontId::new(12.0, theme::figures().resolve(ui.style()).family);
     let color = if figures.is_some() { palette.text } else { palette.weak_text };
     let painter = ui.painter().with_clip_rect(rect);
@@ -69,7 +79,9 @@ fn has_errors(figures: &LinkStatistics) -> bool {
 /// Fixed-width figures: right-aligned, they stand still.
 fn lines(figures: Option<&LinkStatistics>) -> (String, String) {
     let Some(figures) = figures else { return ("no link".to_owned(), String::new()) };
-    let first = format!("{:7.1} kbit/s {:6.0} req/s", figures.kbit_per_s, figures.transactions_per_s);
+    let first =
+        LinkMessage::Rates { kbit_per_s: figures.kbit_per_s, requests_per_s: figures.transactions_per_s }
+            .to_string();
     let errors = figures.timeouts + figures.crc_errors;
     let round_trip = milliseconds(figures.round_trip_median_s);
     // As wide as the plural, so that the figure stands still.
@@ -84,18 +96,16 @@ fn milliseconds(seconds: f64) -> String {
 
 /// All figures, one per line.
 pub fn in_full(figures: &LinkStatistics) -> String {
-    format!(
-        "{:.1} kbit/s, {:.0} requests per second\n\
-         Round trip: median {:.2} ms, 99 % within {:.2} ms\n\
-         Time-outs {}, CRC errors {}, retries {}, stray bytes {}, samples dropped {}",
-        figures.kbit_per_s,
-        figures.transactions_per_s,
-        figures.round_trip_median_s * 1000.0,
-        figures.round_trip_p99_s * 1000.0,
-        figures.timeouts,
-        figures.crc_errors,
-        figures.retries,
-        figures.stray_bytes,
-        figures.dropped_samples,
-    )
+    LinkMessage::InFull {
+        kbit_per_s: figures.kbit_per_s,
+        requests_per_s: figures.transactions_per_s,
+        median: figures.round_trip_median_s * 1000.0,
+        most: figures.round_trip_p99_s * 1000.0,
+        timeouts: figures.timeouts,
+        crc_errors: figures.crc_errors,
+        retries: figures.retries,
+        stray: figures.stray_bytes,
+        dropped: figures.dropped_samples,
+    }
+    .to_string()
 }

@@ -13,6 +13,7 @@ use crate::family::{self, Family};
 use crate::model::devices::{BAUD_RATES, Choice, Devices, described};
 use crate::model::{Arming, Connection, ConnectionId, IndicatorState, Model, Phase, Simulated, place_of};
 use crate::screens::face;
+use crate::shell::messages::ShellMessage;
 use crate::theme::Palette;
 use crate::widgets::{choice_ui, heading_ui, text_field_ui};
 
@@ -60,7 +61,10 @@ struct Row {
 fn rows(model: &Model) -> Vec<Row> {
     let devices = &model.devices;
     let simulated = &devices.simulated;
-    let (place, title) = (devices.simulated_target(), format!("Simulated {}", name_of(&simulated.model)));
+    let (place, title) = (
+        devices.simulated_target(),
+        ShellMessage::Simulated { name: name_of(&simulated.model).to_owned() }.to_string(),
+    );
     let mut rows = vec![row(model, Choice::Simulated, &place, &title, "in this program")];
     for port in &devices.ports {
         rows.push(row(model, Choice::Port(port.name.clone()), &port.name, &port.name, &described(port)));
@@ -322,7 +326,7 @@ fn address_ui(ui: &mut Ui, shown: Addresses, family: &dyn Family) -> Addresses {
     let list = ComboBox::from_id_salt("address").width(72.0);
     let each = std::iter::once(Addresses::Scan).chain(each.map(Addresses::Only));
     let (all, cost) = (family.family().addresses(), family.scan_cost());
-    let help = format!("Which addresses to ask when connecting: all from {all}, {cost}or one");
+    let help = ShellMessage::WhichAddresses { all, cost }.to_string();
     choice_ui(ui, list, "Address", &mut chosen, each, text).on_hover_text(help);
     chosen
 }
@@ -375,9 +379,10 @@ fn connect_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     });
     if let Some(search) = searching {
         let bar = egui::ProgressBar::new(search.done as f32 / search.of.max(1) as f32);
-        let text = format!("{} ({} of {})", search.what, search.done, search.of);
+        let text = ShellMessage::Searched { what: search.what.clone(), done: search.done, of: search.of }
+            .to_string();
         let response = ui.add(bar.desired_width(ui.available_width()).text(&text));
-        let spoken = format!("Searching: {text}");
+        let spoken = ShellMessage::Searching { text: text.clone() }.to_string();
         response.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, &spoken));
     }
 }
@@ -422,7 +427,7 @@ fn board_ui(ui: &mut Ui, connection: &Connection, unit: &Identity, in_front: boo
         let label = ui.selectable_label(in_front && selected, unit_text(unit));
         if !in_front {
             // Boards of two links may have one address.
-            let name = format!("{} on {}", unit_text(unit), unit.port);
+            let name = ShellMessage::UnitOn { unit: unit_text(unit), port: unit.port.clone() }.to_string();
             label.widget_info(|| WidgetInfo::selected(Role::Button, true, false, &name));
         }
         if label.clicked() {

@@ -5,6 +5,7 @@ use egui::{Align2, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, p
 
 use crate::command::{Command, Commands};
 use crate::model::{IndicatorState, Model, Saved, Screen};
+use crate::shell::messages::BarMarkMessage;
 use crate::theme::Palette;
 
 pub const WIDTH: f32 = 206.0;
@@ -13,9 +14,10 @@ const HEIGHT: f32 = 36.0;
 /// One indicator with two lines; pressing it goes to the settings.
 pub fn marks_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     let (state, first, second) = mark(model);
+    let (first, second) = (first.to_string(), second.to_string());
     let palette = Palette::of(ui);
     let (rect, response) = ui.allocate_exact_size(vec2(WIDTH, HEIGHT), Sense::click());
-    let spoken = format!("Settings: {first}, {second}");
+    let spoken = BarMarkMessage::Settings { first: first.clone(), second: second.clone() }.to_string();
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &spoken));
     let outline = match (response.has_focus(), response.hovered()) {
         (true, _) => Stroke::new(2.0, palette.accent),
@@ -37,54 +39,54 @@ pub fn marks_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
 }
 
 /// The gravest state, then RAM and EEPROM, then edits and profile.
-fn mark(model: &Model) -> (IndicatorState, String, String) {
+fn mark(model: &Model) -> (IndicatorState, BarMarkMessage, BarMarkMessage) {
     let settings = &model.front.settings;
     let Some(unit) = settings.unit().filter(|unit| unit.is_read() && model.is_connected()) else {
         let text = match (model.is_connected(), settings.running().is_some()) {
-            (false, _) => "no controller",
-            (true, true) => "reading the settings …",
-            (true, false) => "settings not read yet",
+            (false, _) => BarMarkMessage::NoController,
+            (true, true) => BarMarkMessage::Reading,
+            (true, false) => BarMarkMessage::NotRead,
         };
-        return (IndicatorState::Unknown, text.to_owned(), profile(model));
+        return (IndicatorState::Unknown, text, profile(model));
     };
     let (state, first) = match unit.saved() {
-        Saved::Yes => (IndicatorState::Ok, "RAM is saved in EEPROM".to_owned()),
-        Saved::Differs(count) => (IndicatorState::Warning, format!("RAM: {count} not saved in EEPROM")),
+        Saved::Yes => (IndicatorState::Ok, BarMarkMessage::Saved),
+        Saved::Differs(count) => (IndicatorState::Warning, BarMarkMessage::NotInEeprom { count }),
         Saved::NotKnown { written: 0 } => as_known_before(model),
-        Saved::NotKnown { written } => {
-            (IndicatorState::Warning, format!("RAM: {written} written, not saved"))
-        }
+        Saved::NotKnown { written } => (IndicatorState::Warning, BarMarkMessage::Written { written }),
     };
     match unit.changes().len() {
         0 => (state, first, profile(model)),
-        edits => (IndicatorState::Warning, first, format!("{edits} edits not written")),
+        1 => (IndicatorState::Warning, first, BarMarkMessage::OneEdit),
+        edits => (IndicatorState::Warning, first, BarMarkMessage::Edits { edits }),
     }
 }
 
 /// RAM against what the EEPROM was proven to hold last, in an earlier session.
-fn as_known_before(model: &Model) -> (IndicatorState, String) {
+fn as_known_before(model: &Model) -> (IndicatorState, BarMarkMessage) {
     let settings = &model.front.settings;
     let differing = settings.known_eeprom().zip(settings.unit()).and_then(|(known, unit)| {
         let both = |each: &Difference| each.left.is_some() && each.right.is_some();
         Some(diff(unit.table(), &known.settings, unit.ram()?).into_iter().filter(both).count())
     });
     match differing {
-        Some(0) => (IndicatorState::Ok, "RAM is as saved last".to_owned()),
-        Some(count) => (IndicatorState::Warning, format!("RAM: {count} not as saved last")),
-        None => (IndicatorState::Unknown, "EEPROM not known".to_owned()),
+        Some(0) => (IndicatorState::Ok, BarMarkMessage::AsSaved),
+        Some(count) => (IndicatorState::Warning, BarMarkMessage::NotAsSaved { count }),
+        None => (IndicatorState::Unknown, BarMarkMessage::NotKnown),
     }
 }
 
 /// How the open profile differs from the controller.
-fn profile(model: &Model) -> String {
-    let Some(opened) = &model.front.general.profiles.opened else { return "no profile open".to_owned() };
+fn profile(model: &Model) -> BarMarkMessage {
+    let Some(opened) = &model.front.general.profiles.opened else { return BarMarkMessage::NoProfile };
     let differing = model.front.settings.unit().and_then(|unit| {
         let differences = diff(unit.table(), unit.ram()?, &opened.profile.settings);
         Some(differences.iter().filter(|difference| difference.right.is_some()).count())
     });
     match differing {
-        Some(0) => "profile: as in RAM".to_owned(),
-        Some(count) => format!("profile: {count} differ from RAM"),
-        None => "profile: not compared".to_owned(),
+        Some(0) => BarMarkMessage::ProfileAsRam,
+        Some(1) => BarMarkMessage::OneProfileDiffers,
+        Some(count) => BarMarkMessage::ProfileDiffers { count },
+        None => BarMarkMessage::ProfileNotCompared,
     }
 }

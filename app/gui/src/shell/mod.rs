@@ -15,6 +15,7 @@ mod left;
 mod marks;
 mod menu;
 mod message;
+pub mod messages;
 mod palette;
 mod top;
 

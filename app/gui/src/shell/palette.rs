@@ -1,6 +1,7 @@
 //! The command palette: everything that can be done, searched by name and run by key.
 
 use crate::messages::WindowStatusMessage;
+use crate::shell::messages::ShellMessage;
 use egui::{
     Align2, Area, Button, Context, Frame, Id, Key, Modifiers, Order, Role, ScrollArea, Ui, WidgetInfo, vec2,
 };
@@ -71,12 +72,14 @@ fn rows(ctx: &Context, model: &Model) -> Vec<Row> {
     };
     let of_connection = |connection: &Connection| {
         let target = connection.target.as_deref()?;
-        let (name, command) =
-            (format!("Device: Bring {target} to the Front"), Command::Front(connection.id()));
+        let (name, command) = (
+            ShellMessage::BringToFront { target: target.to_string() }.to_string(),
+            Command::Front(connection.id()),
+        );
         Some(Row { name, keys: String::new(), ready: Ok(()), command })
     };
     let of_recent = |target: &String| Row {
-        name: format!("Device: Connect to {target}"),
+        name: ShellMessage::ConnectTo { target: target.clone() }.to_string(),
         keys: String::new(),
         ready: Ok(()),
         command: Command::ConnectTo(target.clone()),

@@ -6,6 +6,7 @@ use egui::{Label, Role, Ui, WidgetInfo, vec2};
 use crate::command::{Command, Commands};
 use crate::family::{Figure, Figures};
 use crate::model::Model;
+use crate::shell::messages::ShellMessage;
 use crate::widgets::{NO_VALUE, Readout, fixed_label_ui};
 
 const GAP: f32 = 4.0;
@@ -85,10 +86,10 @@ fn block_ui(ui: &mut Ui, block: &Figures, model: &Model, commands: &mut Commands
 fn zero_ui(ui: &mut Ui, motor: Motor, connected: bool, commands: &mut Commands) {
     ui.add_enabled_ui(connected, |ui| {
         let response = ui.add_sized(vec2(ZERO_WIDTH, ROW_HEIGHT - 2.0), egui::Button::new("Zero").small());
-        let name = format!("Zero {motor} encoder");
+        let name = ShellMessage::ZeroEncoder { motor }.to_string();
         response.widget_info(|| WidgetInfo::labeled(Role::Button, connected, &name));
         if response
-            .on_hover_text(format!("Sets the count of encoder {} to zero", motor.index() + 1))
+            .on_hover_text(ShellMessage::SetsToZero { number: motor.index() + 1 }.to_string())
             .clicked()
         {
             commands.push(Command::ZeroEncoder(motor));
@@ -105,7 +106,9 @@ fn identity_ui(ui: &mut Ui, model: &Model) {
     let version = identity.map(|identity| match identity.firmware.as_str() {
         "" => "not reported".to_owned(),
         version => match model.front.family().generation_number(identity) {
-            Some(generation) => format!("{version} (gen {generation})"),
+            Some(generation) => {
+                ShellMessage::Version { version: version.to_string(), generation }.to_string()
+            }
             None => identity.generation.to_string(),
         },
     });

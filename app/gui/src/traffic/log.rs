@@ -1,6 +1,6 @@
 //! The list of transactions: only rows in sight are laid out.
 
-use crate::messages::WindowStatusMessage;
+use crate::messages::{TrafficMessage, WindowStatusMessage};
 use std::path::PathBuf;
 
 use egui::{
@@ -104,12 +104,16 @@ fn filter_ui(ui: &mut Ui, log: &mut Log, family: &dyn Family) {
 }
 
 fn summary_ui(ui: &mut Ui, log: &Log) {
-    let mut text = format!("{} of {} transactions", log.shown_len(), log.len());
-    if log.dropped > 0 {
-        text += &format!(", {} older ones dropped", log.dropped);
+    let mut text = TrafficMessage::Shown { shown: log.shown_len(), all: log.len() }.to_string();
+    match log.dropped {
+        0 => {}
+        1 => text += &TrafficMessage::OneDropped.to_string(),
+        dropped => text += &TrafficMessage::Dropped { dropped }.to_string(),
     }
-    if log.paused || log.missed > 0 {
-        text += &format!(", {} packets not recorded while paused", log.missed);
+    match log.missed {
+        0 if !log.paused => {}
+        1 => text += &TrafficMessage::OneMissed.to_string(),
+        missed => text += &TrafficMessage::Missed { missed }.to_string(),
     }
     ui.label(RichText::new(text).small().weak());
 }

@@ -3,6 +3,7 @@
 use brushwork_values::hex;
 use egui::{Label, RichText, ScrollArea, Ui};
 
+use crate::messages::TrafficMessage;
 use crate::model::Model;
 use crate::model::traffic::pending::pending;
 use crate::theme::Palette;
@@ -12,7 +13,7 @@ pub fn pending_ui(ui: &mut Ui, model: &Model) {
     let palette = Palette::of(ui);
     ScrollArea::vertical().id_salt("pending").auto_shrink([false, false]).show(ui, |ui| {
         for refusal in &refusals {
-            ui.label(RichText::new(format!("Cannot be written: {refusal}")).color(palette.error));
+            ui.label(RichText::new(TrafficMessage::NotWritten { refusal: refusal.clone() }.to_string()).color(palette.error));
         }
         if packets.is_empty() && refusals.is_empty() {
             let hint = "Nothing waits to be sent. Settings that were changed and not written yet are shown here as the packets \

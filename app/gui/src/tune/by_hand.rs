@@ -107,9 +107,9 @@ fn held_ui(ui: &mut Ui, which: Loop, held: Option<AnyRegisters>) {
 
 fn advice_ui(ui: &mut Ui, advice: &Advice) {
     match advice {
-        Advice::Wait(text) => IndicatorState::Unknown.line_ui(ui, text),
-        Advice::Good(text) => IndicatorState::Ok.line_ui(ui, text),
-        Advice::Change(text) => IndicatorState::Warning.line_ui(ui, text),
-        Advice::Danger(text) => IndicatorState::Error.line_ui(ui, text),
+        Advice::Wait(text) => IndicatorState::Unknown.line_ui(ui, &text.to_string()),
+        Advice::Good(text) => IndicatorState::Ok.line_ui(ui, &text.to_string()),
+        Advice::Change(text) => IndicatorState::Warning.line_ui(ui, &text.to_string()),
+        Advice::Danger(text) => IndicatorState::Error.line_ui(ui, &text.to_string()),
     }
 }

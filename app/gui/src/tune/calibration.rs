@@ -2,11 +2,13 @@
 //!
 //! Each step says what to do, offers the changes it is made of, and says what the motor's last moves speak for.
 
-use brushwork_values::Motor;
+use brushwork_values::{Message, Motor};
 
+use super::messages::AdviceMessage;
 use super::observe::{Observation, Observer};
 use super::registers::value_of;
 use super::which::Loop;
+use crate::messages::PathMessage;
 use brushwork_core::tune::law::AnyRegisters;
 use brushwork_tuning::registers::RegisterTable as _;
 
@@ -189,10 +191,10 @@ impl Change {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Advice {
     /// Nothing to go by yet; what to do for it.
-    Wait(&'static str),
-    Good(String),
-    Change(String),
-    Danger(String),
+    Wait(Message),
+    Good(AdviceMessage),
+    Change(AdviceMessage),
+    Danger(AdviceMessage),
 }
 
 impl Calibration {
@@ -218,62 +220,50 @@ impl Calibration {
 
     /// What to do now.
     pub fn advice(&self, which: Loop, held: Option<AnyRegisters>) -> Advice {
-        let Some(held) = held else { return Advice::Wait("The settings have not been read yet.") };
+        let Some(held) = held else { return Advice::Wait(PathMessage::Unread.into()) };
         if let Some(missing) = missing(which, self.step, &held) {
-            return Advice::Change(missing.to_owned());
+            return Advice::Change(missing);
         }
         let observer = &self.observers[self.motor.index()];
         match (self.step, observer.observe(which)) {
             (0, _) => Advice::Good(ready(&held)),
             (_, Some(seen)) => advise(which, self.step, &seen),
-            (_, None) if observer.is_asked(which) => {
-                Advice::Wait("Watching the motor: leave the slider where it is for a moment.")
-            }
-            (_, None) => Advice::Wait("Arm the screen and move the slider; then wait a second."),
+            (_, None) if observer.is_asked(which) => Advice::Wait(AdviceMessage::Watching.into()),
+            (_, None) => Advice::Wait(AdviceMessage::ArmAndMove.into()),
         }
     }
 }
 
 /// What must be there before the motor can be moved, or is in the way of the procedure.
-fn missing(which: Loop, step: usize, held: &AnyRegisters) -> Option<&'static str> {
+fn missing(which: Loop, step: usize, held: &AnyRegisters) -> Option<AdviceMessage> {
     let raw = |key| held.raw(key).unwrap_or_default();
     if raw("velocity.qpps") < 1 {
-        return Some("QPPS is 0. Measure or enter it first.");
+        return Some(AdviceMessage::NoQpps);
     }
     if which != Loop::Position || held.raw("position.p").is_none() {
         return None;
     }
     let velocity = ["velocity.p", "velocity.i", "velocity.d"];
     if raw("position.max") <= raw("position.min") {
-        Some(
-            "Min and Max leave no travel, so the slider has nowhere to go. Set them under Position loop, or press No end stops in the \
-             first step.",
-        )
+        Some(AdviceMessage::NoTravel)
     } else if step == 0 && velocity.iter().any(|key| raw(key) != 0) {
-        Some(
-            "P, I or D of the velocity loop are not 0. Set them to 0, or leave them if that loop is tuned already, and go on.",
-        )
+        Some(AdviceMessage::VelocityGains)
     } else {
         None
     }
 }
 
-fn ready(held: &AnyRegisters) -> String {
+fn ready(held: &AnyRegisters) -> AdviceMessage {
     let qpps = held.raw("velocity.qpps").unwrap_or_default();
     match (held.raw("position.min"), held.raw("position.max")) {
-        (Some(min), Some(max)) => format!(
-            "QPPS is {qpps} counts/s and the travel goes from {min} to {max} counts. If that is right, go on."
-        ),
-        _ => format!("QPPS is {qpps} counts/s. If that is right, go on."),
+        (Some(min), Some(max)) => AdviceMessage::Ready { qpps, min, max },
+        _ => AdviceMessage::QppsReady { qpps },
     }
 }
 
 fn advise(which: Loop, step: usize, seen: &Observation) -> Advice {
     if seen.runs_away {
-        return Advice::Danger(
-            "It runs away at full duty: stop. The motor leads or the encoder wires are swapped; swap one of the two, not both."
-                .to_owned(),
-        );
+        return Advice::Danger(AdviceMessage::RunsAway);
     }
     match which {
         Loop::Velocity => advise_velocity(step, seen),
@@ -282,61 +272,47 @@ fn advise(which: Loop, step: usize, seen: &Observation) -> Advice {
 }
 
 fn advise_velocity(step: usize, seen: &Observation) -> Advice {
-    let (below, percent) = (100.0 * seen.error, 100.0 * seen.amplitude / seen.setpoint.abs().max(1.0));
-    let vibration =
-        format!("It vibrates: ± {percent:.0} % of the speed, ± {:.0} % duty.", seen.duty_amplitude_percent);
+    let (below_percent, percent) =
+        (100.0 * seen.error, 100.0 * seen.amplitude / seen.setpoint.abs().max(1.0));
+    let vibrates =
+        AdviceMessage::Vibrates { speed_percent: percent, duty_percent: seen.duty_amplitude_percent }.into();
     match (step, seen.vibrates) {
-        (1 | 2, true) => Advice::Change(format!("{vibration} Take P to two thirds.")),
-        (3, true) => Advice::Change(format!("{vibration} Take I back.")),
-        (_, true) => Advice::Change(format!("{vibration} Take D back, or I and P if D is 0.")),
-        (1, false) if seen.error > HARDLY => Advice::Change("It hardly moves. Raise P.".to_owned()),
-        (1, false) => Advice::Good("It turns and the loop has it. Go on to P.".to_owned()),
-        (2, false) if seen.error.abs() <= NEAR => {
-            Advice::Good(format!("Smooth, and {below:.1} % off. Go on to I."))
-        }
-        (2, false) => Advice::Change(format!("Smooth, but {below:.0} % below the setpoint. Raise P.")),
-        (_, false) if seen.error.abs() > EXACT => {
-            Advice::Change(format!("{below:.1} % below the setpoint. Raise I."))
-        }
+        (1 | 2, true) => Advice::Change(AdviceMessage::VibratesLessP { vibrates }),
+        (3, true) => Advice::Change(AdviceMessage::VibratesLessI { vibrates }),
+        (_, true) => Advice::Change(AdviceMessage::VibratesLess { vibrates }),
+        (1, false) if seen.error > HARDLY => Advice::Change(AdviceMessage::HardlyTurns),
+        (1, false) => Advice::Good(AdviceMessage::Turns),
+        (2, false) if seen.error.abs() <= NEAR => Advice::Good(AdviceMessage::NearSpeed { below_percent }),
+        (2, false) => Advice::Change(AdviceMessage::BelowWithP { below_percent }),
+        (_, false) if seen.error.abs() > EXACT => Advice::Change(AdviceMessage::BelowWithI { below_percent }),
         (_, false) => match seen.overshoot.filter(|over| *over > MUCH_OVERSHOOT) {
-            Some(over) => Advice::Change(format!(
-                "Exact, but the last change overshot by {:.0} %. Take I back a little.",
-                100.0 * over
-            )),
-            None => Advice::Good("Exact and smooth. You are done; save it when you like.".to_owned()),
+            Some(over) => Advice::Change(AdviceMessage::OvershootsWithI { percent: 100.0 * over }),
+            None => Advice::Good(AdviceMessage::SpeedDone),
         },
     }
 }
 
 fn advise_position(step: usize, seen: &Observation) -> Advice {
-    let hunting = format!("It hunts about the setpoint: ± {:.0} counts.", seen.amplitude);
+    let hunts = AdviceMessage::Hunts { counts: seen.amplitude }.into();
     let over = seen.overshoot.unwrap_or(0.0);
-    let overshot = format!("The last move overshot by {:.0} %.", 100.0 * over);
+    let overshot = AdviceMessage::Overshot { percent: 100.0 * over }.into();
     match (step, seen.vibrates) {
-        (1 | 2, true) => Advice::Change(format!("{hunting} Take D back, then P.")),
-        (_, true) => Advice::Change(format!("{hunting} Widen the deadzone, or take I back.")),
+        (1 | 2, true) => Advice::Change(AdviceMessage::HuntsLessD { hunts }),
+        (_, true) => Advice::Change(AdviceMessage::HuntsInDeadzone { hunts }),
         (1, false) if seen.way.is_some_and(|way| seen.error.abs() > HARDLY * way.abs()) => {
-            Advice::Change("It hardly moves. Go on to P, and raise it.".to_owned())
+            Advice::Change(AdviceMessage::HardlyGoes)
         }
-        (1, false) => Advice::Good("It goes and stops. Go on to P and D.".to_owned()),
-        (2, false) if over > MUCH_OVERSHOOT => Advice::Change(format!("{overshot} Raise D.")),
-        (2, false) if over > SOME_OVERSHOOT => {
-            Advice::Change(format!("{overshot} Raise D until it does not."))
+        (1, false) => Advice::Good(AdviceMessage::Goes),
+        (2, false) if over > MUCH_OVERSHOOT => Advice::Change(AdviceMessage::OvershotMoreD { overshot }),
+        (2, false) if over > SOME_OVERSHOOT => Advice::Change(AdviceMessage::OvershotABit { overshot }),
+        (2, false) if seen.error.abs() > 3.0 => {
+            Advice::Change(AdviceMessage::ShortWithP { counts: seen.error.abs() })
         }
-        (2, false) if seen.error.abs() > 3.0 => Advice::Change(format!(
-            "No overshoot, and {:.0} counts from the setpoint. Raise P.",
-            seen.error.abs()
-        )),
-        (2, false) => Advice::Good(
-            "No overshoot, and at the setpoint. Raise P and D for more speed, or go on.".to_owned(),
-        ),
-        (_, false) if seen.error.abs() > 1.5 => Advice::Change(format!(
-            "{:.0} counts from the setpoint. Raise I, and Max I if that does nothing.",
-            seen.error.abs()
-        )),
-        (_, false) => {
-            Advice::Good("At the setpoint and quiet. You are done; save it when you like.".to_owned())
+        (2, false) => Advice::Good(AdviceMessage::AtSetpoint),
+        (_, false) if seen.error.abs() > 1.5 => {
+            Advice::Change(AdviceMessage::ShortWithI { counts: seen.error.abs() })
         }
+        (_, false) => Advice::Good(AdviceMessage::PositionDone),
     }
 }
 
@@ -385,32 +361,40 @@ mod tests {
         for step in 0..5 {
             calibration.go_to(Loop::Position, step);
             let advice = |held| calibration.advice(Loop::Position, Some(held));
-            assert!(matches!(advice(slow), Advice::Change(text) if text.contains("QPPS is 0")));
-            assert!(matches!(advice(stuck), Advice::Change(text) if text.contains("no travel")));
+            assert!(matches!(advice(slow), Advice::Change(text) if text.to_string().contains("QPPS is 0")));
+            assert!(matches!(advice(stuck), Advice::Change(text) if text.to_string().contains("no travel")));
         }
         calibration.go_to(Loop::Position, 0);
         let cascaded = travel(-100, 100);
         let advice = calibration.advice(Loop::Position, Some(cascaded));
-        assert!(matches!(advice, Advice::Change(text) if text.contains("velocity loop are not 0")));
+        assert!(
+            matches!(advice, Advice::Change(text) if text.to_string().contains("velocity loop are not 0"))
+        );
         let simple = with(cascaded, &[("velocity.p", 0)]);
         let advice = calibration.advice(Loop::Position, Some(simple));
-        assert!(matches!(advice, Advice::Good(text) if text.contains("from -100 to 100 counts")));
+        assert!(matches!(advice, Advice::Good(text) if text.to_string().contains("from -100 to 100 counts")));
     }
 
     #[test]
     fn advice_follows_the_procedure() {
         let seen = Observation { setpoint: 1000.0, error: 0.3, ..Observation::default() };
-        assert!(matches!(advise(Loop::Velocity, 2, &seen), Advice::Change(text) if text.contains("Raise P")));
+        assert!(
+            matches!(advise(Loop::Velocity, 2, &seen), Advice::Change(text) if text.to_string().contains("Raise P"))
+        );
         let shakes = Observation { vibrates: true, amplitude: 100.0, ..seen };
         assert!(
-            matches!(advise(Loop::Velocity, 2, &shakes), Advice::Change(text) if text.contains("two thirds"))
+            matches!(advise(Loop::Velocity, 2, &shakes), Advice::Change(text) if text.to_string().contains("two thirds"))
         );
         let near = Observation { error: 0.02, ..seen };
         assert!(matches!(advise(Loop::Velocity, 2, &near), Advice::Good(_)));
-        assert!(matches!(advise(Loop::Velocity, 3, &near), Advice::Change(text) if text.contains("Raise I")));
+        assert!(
+            matches!(advise(Loop::Velocity, 3, &near), Advice::Change(text) if text.to_string().contains("Raise I"))
+        );
         let over =
             Observation { error: 0.0, overshoot: Some(0.2), setpoint: 500.0, ..Observation::default() };
-        assert!(matches!(advise(Loop::Position, 2, &over), Advice::Change(text) if text.contains("Raise D")));
+        assert!(
+            matches!(advise(Loop::Position, 2, &over), Advice::Change(text) if text.to_string().contains("Raise D"))
+        );
         let away = Observation { runs_away: true, ..over };
         assert!(matches!(advise(Loop::Position, 1, &away), Advice::Danger(_)));
     }

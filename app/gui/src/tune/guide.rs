@@ -10,6 +10,7 @@ use crate::command::{Command, Commands};
 use crate::focus::{Region, region_ui};
 use crate::model::Model;
 use crate::theme::Palette;
+use crate::tune::messages::RunMessage;
 
 /// Width of the figures; the picture has the rest.
 const LEFT_WIDTH: f32 = 412.0;
@@ -81,7 +82,7 @@ fn part_ui(ui: &mut Ui, place: Rect, contents: impl FnOnce(&mut Ui)) {
 
 /// Whole seconds, so that the figure does not flicker.
 fn time_left(seconds: f64) -> String {
-    if seconds < 1.5 { "a moment left".to_owned() } else { format!("about {seconds:.0} s left") }
+    if seconds < 1.5 { "a moment left".to_owned() } else { RunMessage::SecondsLeft { seconds }.to_string() }
 }
 
 /// What goes on, how long it will take, and the button that ends it.
@@ -90,7 +91,7 @@ fn progress_ui(ui: &mut Ui, tuning: &Tuning, which: Loop, commands: &mut Command
     let _palette = Palette::of(ui);
     let left = super::remaining::remaining(sequence);
     ui.horizontal(|ui| {
-        ui.heading(format!("Tuning {}", tuning.motor(which)));
+        ui.heading(RunMessage::Tuning { motor: tuning.motor(which) }.to_string());
         let stop = Button::new(RichText::new("Stop the run").strong());
         let hint = "Stops at once and puts the old gains back. Esc does the same.";
         if ui.add(stop).on_hover_text(hint).clicked() {

@@ -3,6 +3,7 @@
 use egui::accesskit::Action;
 use egui::{Response, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 
+use crate::messages::ButtonMessage;
 use crate::theme::Palette;
 use crate::widgets::numeric::Numeric;
 use crate::widgets::steps::{Steps, set_by_reader};
@@ -15,7 +16,7 @@ const TOP: f64 = 100.0;
 pub fn level_ui(ui: &mut Ui, name: &str, hint: &str, width: f32, level: &mut f64) -> bool {
     let before = *level;
     rail_ui(ui, name, width, level).on_hover_text(hint);
-    let exact = format!("{name} exact");
+    let exact = ButtonMessage::Exact { name: name.to_string() }.to_string();
     let entry = Numeric { name: &exact, unit: "", range: 0.0..=TOP, decimals: 0, step: 1.0, width: 44.0 };
     entry.ui(ui, level).on_hover_text(hint);
     *level = level.round().clamp(0.0, TOP);

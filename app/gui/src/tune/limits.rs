@@ -7,6 +7,7 @@ use egui::{Label, RichText, Ui};
 
 use super::run::Run;
 use crate::theme::Palette;
+use crate::tune::messages::RunMessage;
 
 pub fn limits_ui(ui: &mut Ui, run: &Run) {
     let Some((text, is_beyond)) = sentence(run) else { return };
@@ -26,7 +27,7 @@ fn sentence(run: &Run) -> Option<(String, bool)> {
     let limit = limit_at(task, run.report.request.level, run.level, &shown.gains);
     let mut text = limit.map_or_else(unlimited, |limit| limited(&limit, run.level));
     if run.is_as_proposed() && run.report.causes.contains(&Cause::BackedOff) {
-        text = format!("The run took gains back, since the machine was rougher than the model. {text}");
+        text = RunMessage::TookBack { limit: text }.to_string();
     }
     Some((text, limit.is_some_and(|limit| limit.used > BEYOND)))
 }
@@ -51,7 +52,7 @@ fn limited(limit: &Limit, level: f64) -> String {
     match limit.by {
         Bound::Backlash => format!("{verb} {what}."),
         Bound::Sensitivity | Bound::Lag | Bound::LightLoad | Bound::DutyNoise => {
-            format!("{verb} {what}; {percent:.0} % of what level {level:.0} allows.")
+            RunMessage::Limit { verb, what, percent, level }.to_string()
         }
     }
 }

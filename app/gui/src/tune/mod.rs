@@ -14,6 +14,7 @@ mod level;
 mod limits;
 pub mod looked_at;
 pub mod measured;
+pub mod messages;
 pub mod model;
 pub mod observe;
 pub mod plots;

@@ -11,7 +11,9 @@ use super::looked_at::{Kind, View};
 use super::model::Panel;
 use super::run::{Run, SPEED_OVER_S, Shown};
 use super::which::Loop;
+use crate::messages::NameMessage;
 use crate::theme::Palette;
+use crate::tune::messages::ChartMessage;
 
 /// Below this the open loop has no phase to speak of, dB.
 const LEAST_GAIN_DB: f64 = -60.0;
@@ -52,7 +54,7 @@ fn record_ui(ui: &mut Ui, trace: &Trace, which: Loop, end_s: f64, empty: &str) {
     if main.iter().any(|line| !line.points.is_empty()) {
         main.insert(0, line("setpoint", setpoints(trace, &whole), palette.traces[0], Look::Dashed));
     }
-    let label = format!("Live {name} of the run");
+    let label = ChartMessage::Live { name }.to_string();
     chart_ui(ui, &label, (x, y), &main, empty, vec2(room.x, heights[0]));
     let duty = [line("duty", duties(trace, None), palette.traces[1], Look::Solid)];
     let y = Axis::new("duty", "%", -110.0, 110.0);
@@ -133,7 +135,7 @@ fn measured_ui(ui: &mut Ui, run: &Run, which: Loop) {
     duty.push(line("measured", duties, palette.traces[1], Look::Solid));
     let x = Axis::new("time", "s", 0.0, (stretch.to_s - from_s).max(0.1));
     let [upper, lower] = heights(size.y);
-    let label = format!("Measured {name} over the predicted one");
+    let label = ChartMessage::Measured { name }.to_string();
     chart_ui(ui, &label, (x, around(name, unit, &main)), &main, "", vec2(size.x, upper));
     let label = "Measured duty over the predicted one";
     chart_ui(ui, label, (x, around("duty", "%", &duty)), &duty, "", vec2(size.x, lower));
@@ -157,9 +159,9 @@ fn replies_ui(ui: &mut Ui, panel: &Panel, run: &Run, which: Loop, load: bool) {
     let [upper, lower] = heights(size.y);
     let name = if which == Loop::Velocity { "speed" } else { "position" };
     let label = if load {
-        format!("Predicted {name} under a load step")
+        ChartMessage::LoadStep { name }.to_string()
     } else {
-        format!("Predicted step of the {name}")
+        ChartMessage::Step { name }.to_string()
     };
     let empty = "There is no model yet: tune first.";
     let y = around(name, which.unit(), &main);
@@ -215,7 +217,7 @@ fn sensitivity_ui(ui: &mut Ui, panel: &Panel, run: &Run) {
         .collect();
     let top_hz = lines.iter().filter_map(|line| line.points.last().map(|p| p[0])).fold(1.0, f64::max);
     let goal = run.task().map_or(1.6, |task| task.goal.ms);
-    let word = format!("Ms of the level: {goal:.2}");
+    let word = ChartMessage::Goal { goal }.to_string();
     let top = lines.iter().flat_map(|line| &line.points).map(|p| p[1]).fold(goal, f64::max).min(6.0);
     let x = Axis::new("frequency", "Hz", (top_hz * 2e-4).max(0.01), top_hz).log();
     let y = Axis::new("sensitivity |S|", "", 0.0, (1.15 * top).max(1.8));
@@ -233,7 +235,12 @@ fn lines_of<'a>(
     let others = panel.runs.iter().filter(move |other| other.number != run.number && other.is_overlaid);
     let earlier = others.filter_map(|other| {
         let color = other.color(palette);
-        Some((format!("run {}", other.number), other.shown.as_ref()?, color, Look::Dots))
+        Some((
+            NameMessage::RunLine { number: other.number }.to_string(),
+            other.shown.as_ref()?,
+            color,
+            Look::Dots,
+        ))
     });
     let current = run.current().map(|shown| ("current".to_owned(), shown, palette.weak_text, Look::Dashed));
     let shown = run.shown.as_ref().map(|shown| ("proposed".to_owned(), shown, palette.accent, Look::Solid));

@@ -7,6 +7,7 @@ use super::sketches::{Sketch, sketch_ui};
 use super::{Loop, Run, TuneAction};
 use crate::command::{Command, Commands};
 use crate::model::{IndicatorState, Model, interruption};
+use crate::tune::messages::RunMessage;
 
 /// What to do where one method does not get on with a machine.
 const OTHER_METHOD: [&str; 2] = [
@@ -154,8 +155,7 @@ fn clearing_ui(ui: &mut Ui, model: &Model, which: Loop, commands: &mut Commands)
 /// Says that L and R are cleared, with the way back.
 pub fn cleared_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     let Some(motor) = model.front.tune.cleared_winding() else { return };
-    IndicatorState::Warning
-        .line_ui(ui, &format!("L and R of {motor} are cleared. They are put back after the run."));
+    IndicatorState::Warning.line_ui(ui, &RunMessage::Cleared { motor }.to_string());
     if ui.button("Put L and R back").on_hover_text("Now, without a run").clicked() {
         commands.push(Command::Tune(TuneAction::PutWindingBack));
     }
@@ -164,7 +164,7 @@ pub fn cleared_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
 /// What was seen; of a run that was stopped, by what.
 fn sentence(run: &Run, cause: Cause) -> String {
     match run.interrupted.filter(|_| cause == Cause::Stopped) {
-        Some(by) => format!("The run was stopped: {}.", interruption(by)),
+        Some(by) => RunMessage::StoppedBy { by: interruption(by) }.to_string(),
         None => cause.sentence().into_owned(),
     }
 }
@@ -172,7 +172,7 @@ fn sentence(run: &Run, cause: Cause) -> String {
 pub fn refusal_ui(ui: &mut Ui, model: &Model, which: Loop, commands: &mut Commands) {
     let Some(run) = model.front.tune.front(which).run() else { return };
     let motor = model.front.tune.motor(which);
-    let head = format!("{motor} was not tuned · run {} · {:.1} s", run.number, run.report.seconds.1);
+    let head = RunMessage::NotTuned { motor, number: run.number, seconds: run.report.seconds.1 }.to_string();
     IndicatorState::Error.line_ui(ui, &head);
     let is_armed = model.front.link.arming.is_armed_for(which.scope());
     ui.horizontal_wrapped(|ui| {

@@ -11,6 +11,7 @@ use super::{FIGURES, Figures, Loop, Run, TuneAction, figure_ui};
 use crate::command::{Command, Commands};
 use crate::model::{IndicatorState, Model, Sheet};
 use crate::theme::Palette;
+use crate::tune::messages::RunMessage;
 use crate::widgets::numeric::Numeric;
 use brushwork_tuning::registers::{Form, RegisterField, RegisterTable as _};
 
@@ -77,7 +78,10 @@ fn verdict_ui(ui: &mut Ui, run: &Run) {
         Verdict::TunedWithWarnings => (IndicatorState::Warning, "Tuned with warnings"),
         Verdict::Refused => (IndicatorState::Error, "Refused"),
     };
-    state.line_ui(ui, &format!("{word} · run {} · {:.1} s", run.number, report.seconds.1));
+    state.line_ui(
+        ui,
+        &RunMessage::Ended { verdict: word, number: run.number, seconds: report.seconds.1 }.to_string(),
+    );
     for cause in &report.causes {
         IndicatorState::Warning.line_ui(ui, &cause.sentence());
     }
@@ -108,30 +112,27 @@ fn feed_forward_text(run: Option<&Run>) -> Option<String> {
     } else {
         ""
     };
-    Some(format!(
-        "Feed-forward: {} {} gives {percent:.0} % of a speed's duty.{rest}",
-        given.register, given.raw
-    ))
+    Some(RunMessage::FeedForward { register: given.register, raw: given.raw, percent, rest }.to_string())
 }
 
 /// What was found of the motor, in one line.
 fn model_text(report: &Report) -> Option<String> {
     let fit = report.fit?;
-    let mut text = format!(
-        "Motor: {:.0} counts/s at full duty ± {:.2} %, time constant {:.1} ms ± {:.0} %, friction {:.1} % duty",
-        report.qpps?,
-        100.0 * report.free.map_or(2.0 * fit.sd_ln_gain, |free| free.interval),
-        1e3 * fit.model.tau_s,
-        200.0 * fit.sd_ln_tau,
-        100.0 * fit.model.coulomb_duty,
-    );
+    let mut text = RunMessage::Model {
+        qpps: report.qpps?,
+        gain_interval_percent: 100.0 * report.free.map_or(2.0 * fit.sd_ln_gain, |free| free.interval),
+        time_constant_ms: 1e3 * fit.model.tau_s,
+        time_interval_percent: 200.0 * fit.sd_ln_tau,
+        friction_percent: 100.0 * fit.model.coulomb_duty,
+    }
+    .to_string();
     if let Some(lag) = &report.lag {
         let (low, high) = (1e3 * lag.interval_s.0, 1e3 * lag.interval_s.1);
-        text += &format!(", lag {low:.1} to {high:.1} ms");
+        text += &RunMessage::Lag { low, high }.to_string();
     }
     if let Some(slack) = report.backlash {
         text += &if slack.counts > 0.0 {
-            format!(", backlash of at least {:.1} ± {:.1} counts", slack.counts, slack.interval_counts)
+            RunMessage::Backlash { counts: slack.counts, interval: slack.interval_counts }.to_string()
         } else {
             ", no backlash seen".to_owned()
         };
@@ -161,7 +162,9 @@ fn gains_ui(ui: &mut Ui, model: &mut Model, which: Loop, held: Option<AnyRegiste
                 label.on_hover_text(field.hint);
             }
             figure_ui(ui, &current.map_or_else(|| "–".to_owned(), |value| field.text(value)), 84.0);
-            if let Some(value) = entry_ui(ui, field, &format!("{motor} proposed {}", field.label), value) {
+            if let Some(value) =
+                entry_ui(ui, field, &RunMessage::Proposed { motor, field: field.label }.to_string(), value)
+            {
                 wanted.set_value(field, value);
             }
             figure_ui(ui, &change_text(field, current, wanted.value(field)), 72.0);
@@ -189,13 +192,13 @@ fn rules_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
         for found in &run.rules {
             let is_shown = shown.is_some_and(|shown| shown.same_gains(&found.registers));
             let hint = if found.is_stable {
-                format!(
-                    "P {:.3}, I {:.2}: Ms {:.2}, overshoot {:.0} % on the model",
-                    found.design.gains.velocity.p,
-                    found.design.gains.velocity.i,
-                    found.design.ms,
-                    100.0 * found.design.score.overshoot
-                )
+                RunMessage::Rule {
+                    p: found.design.gains.velocity.p,
+                    i: found.design.gains.velocity.i,
+                    ms: found.design.ms,
+                    overshoot_percent: 100.0 * found.design.score.overshoot,
+                }
+                .to_string()
             } else {
                 "Unstable on the model".to_owned()
             };
@@ -314,10 +317,7 @@ fn acts_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands)
         }
     });
     if !run.is_as_proposed() {
-        let text = format!(
-            "Considered on the model only: level {:.0}, or gains by hand. Nothing was sent.",
-            run.level
-        );
+        let text = RunMessage::Considered { level: run.level }.to_string();
         ui.label(RichText::new(text).small().color(Palette::of(ui).accent));
     }
     match run.verified {
@@ -342,7 +342,7 @@ fn figures_ui(ui: &mut Ui, model: &Model, which: Loop) {
             let (measured, promised) = measured(run, name);
             let response = figure_ui(ui, &measured, 72.0);
             if let Some(promised) = promised {
-                response.on_hover_text(format!("The model gives {promised} for the same moves"));
+                response.on_hover_text(RunMessage::Promised { promised }.to_string());
             }
             ui.end_row();
         }

@@ -3,8 +3,10 @@
 use egui::{Align, Color32, Grid, Label, Layout, RichText, Sense, Ui, vec2};
 
 use super::{FIGURES, Loop, Run, figure_ui};
+use crate::messages::NameMessage;
 use crate::model::Model;
 use crate::theme::Palette;
+use crate::tune::messages::RunMessage;
 use brushwork_core::tune::law::AnyRegisters;
 use brushwork_tuning::registers::RegisterTable as _;
 
@@ -45,7 +47,10 @@ pub fn runs_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
         for (index, run) in panel.runs.iter_mut().enumerate() {
             let name = ui.add_sized(
                 vec2(NAME_WIDTH, HEIGHT),
-                egui::Button::selectable(index == chosen, format!("Run {}", run.number)),
+                egui::Button::selectable(
+                    index == chosen,
+                    NameMessage::Run { number: run.number }.to_string(),
+                ),
             );
             if name.on_hover_text(described(run)).clicked() {
                 chosen = index;
@@ -77,7 +82,7 @@ fn overlay_ui(ui: &mut Ui, run: &mut Run, is_chosen: bool, palette: &Palette) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         let drawn = ui.add_enabled(!is_chosen && run.shown.is_some(), egui::Checkbox::without_text(&mut run.is_overlaid));
-        ui.ctx().accesskit_node_builder(drawn.id, |node| node.set_label(format!("Draw run {}", run.number)));
+        ui.ctx().accesskit_node_builder(drawn.id, |node| node.set_label(RunMessage::Draw { number: run.number }.to_string()));
         drawn.on_hover_text("Draws what it promises beneath the run that is looked at: step, load, Bode, Nyquist, sensitivity");
         let (place, _) = ui.allocate_exact_size(vec2(MARK_WIDTH, HEIGHT), Sense::hover());
         if run.is_overlaid && !is_chosen && run.shown.is_some() {
@@ -128,7 +133,7 @@ fn short(value: f64, decimals: usize) -> String {
 /// What a pointer over its name tells.
 fn described(run: &Run) -> String {
     let report = &run.report;
-    let mut text = format!("Level {:.0}, {:.1} s", run.level, report.seconds.1);
+    let mut text = RunMessage::Level { level: run.level, seconds: report.seconds.1 }.to_string();
     if let Some(cause) = report.causes.first() {
         text = format!("{text}\n{}", cause.sentence());
     }

@@ -10,8 +10,10 @@ use super::model::{Setting, TuneAction};
 use super::which::Loop;
 use crate::command::{Command, Commands};
 use crate::family::Ability;
+use crate::messages::NameMessage;
 use crate::model::Model;
 use crate::theme::Palette;
+use crate::tune::messages::RunMessage;
 use crate::widgets::numeric::Numeric;
 
 /// From these widths on both motors stand in one row, with words beside their sliders, and all options in another.
@@ -62,12 +64,13 @@ fn motor_row_ui(
     commands: &mut Commands,
 ) {
     let is_front = model.front.tune.motor(which) == motor;
-    let look = ui.selectable_label(is_front, format!("Motor {}", motor.index() + 1));
+    let look = ui.selectable_label(is_front, NameMessage::Motor { number: motor.index() + 1 }.to_string());
     if look.on_hover_text("Shows its results below").clicked() {
         model.front.tune.look_at(which, motor);
     }
     let lacks_travel = model.front.tune.panel(which, motor).setting.lacks_travel();
-    let tune = ui.add_enabled(can_start && !lacks_travel, Button::new(format!("Tune {motor}")));
+    let tune =
+        ui.add_enabled(can_start && !lacks_travel, Button::new(RunMessage::Tune { motor }.to_string()));
     let tune = tune.on_disabled_hover_text(if lacks_travel {
         "Say first how far the axis may go: Turns freely, or Within"
     } else {
@@ -83,7 +86,13 @@ fn motor_row_ui(
         ui.label(RichText::new("soft").small().weak());
     }
     let hint = "How stiff the loop is made. After a run it redraws what the gains of another level would do, without moving anything.";
-    if level_ui(ui, &format!("{motor} level"), hint, if is_wide { 136.0 } else { 104.0 }, &mut level) {
+    if level_ui(
+        ui,
+        &RunMessage::LevelOf { motor }.to_string(),
+        hint,
+        if is_wide { 136.0 } else { 104.0 },
+        &mut level,
+    ) {
         panel.setting.level = level;
         if let Some(run) = panel.run_mut() {
             run.set_level(level);
@@ -106,7 +115,7 @@ fn options_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
     let encoder_width = if has_encoders { 0.0 } else { ENCODER_WIDTH };
     let is_wide = ui.available_width() >= OPTIONS_IN_A_ROW[which as usize] + travel_width - encoder_width;
     ui.horizontal(|ui| {
-        ui.strong(format!("Motor {}:", motor.index() + 1));
+        ui.strong(NameMessage::MotorHead { number: motor.index() + 1 }.to_string());
         methods_ui(ui, setting, methods);
         // A velocity loop has no use for position limits, which may be left over.
         travel_ui(ui, setting, travel.filter(|_| which == Loop::Position));

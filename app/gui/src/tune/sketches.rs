@@ -6,6 +6,7 @@ use egui::{
     Vec2, WidgetInfo, pos2, vec2,
 };
 
+use crate::messages::SpokenMessage;
 use crate::theme::Palette;
 
 /// Size of the drawing, points.
@@ -155,7 +156,9 @@ impl Sketch {
 pub fn sketch_ui(ui: &mut Ui, sketch: &Sketch) {
     let width = SIZE.x.min(ui.available_width());
     let (rect, response) = ui.allocate_exact_size(vec2(width, SIZE.y), Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, format!("Sketch: {}", sketch.caption)));
+    response.widget_info(|| {
+        WidgetInfo::labeled(Role::Image, true, SpokenMessage::Sketch { caption: sketch.caption }.to_string())
+    });
     let palette = Palette::of(ui);
     let painter = ui.painter().with_clip_rect(rect);
     painter.rect(rect, 4.0, palette.ground, Stroke::new(1.0, palette.line), StrokeKind::Inside);

@@ -6,12 +6,13 @@ use egui::{Button, Label, RichText, Ui};
 use super::which::Loop;
 use crate::model::loop_settings::RESISTANCE;
 use crate::model::{Model, UnitSettings};
+use crate::tune::messages::RunMessage;
 
 /// Offers the measured resistance, and says what setting it does.
 pub fn winding_ui(ui: &mut Ui, model: &mut Model, which: Loop, winding: &Winding) {
     let motor = model.front.tune.motor(which);
     ui.horizontal_wrapped(|ui| {
-        let text = format!("Measured R {:.3} ± {:.3} Ω", winding.ohms, winding.interval_ohms);
+        let text = RunMessage::Resistance { ohms: winding.ohms, interval: winding.interval_ohms }.to_string();
         ui.label(text).on_hover_text("Of the winding, its leads and the bridge, with its 95 % interval");
         let is_free =
             !model.front.is_guided() && model.front.settings.unit().is_some_and(UnitSettings::is_known);
@@ -31,7 +32,7 @@ pub fn winding_ui(ui: &mut Ui, model: &mut Model, which: Loop, winding: &Winding
 
 /// Says why there is none.
 pub fn unknown_ui(ui: &mut Ui, why: WindingUnknown) {
-    weak_ui(ui, &format!("R of the winding was not reported: {}", why.sentence()));
+    weak_ui(ui, &RunMessage::NoResistance { why: why.sentence() }.to_string());
 }
 
 fn weak_ui(ui: &mut Ui, text: &str) {

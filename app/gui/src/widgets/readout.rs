@@ -2,6 +2,7 @@
 
 use egui::{Align2, Response, Role, Sense, TextStyle, Ui, Vec2, WidgetInfo, pos2, vec2};
 
+use crate::messages::SpokenMessage;
 use crate::theme::{self, Palette};
 
 /// One figure: what it is, how wide, in what unit.
@@ -59,7 +60,7 @@ impl Readout<'_> {
         match value {
             Some(value) if self.unit.is_empty() => format!("{}: {value}", self.label),
             Some(value) => format!("{}: {value} {}", self.label, self.unit),
-            None => format!("{}: no value", self.label),
+            None => SpokenMessage::NoValue { name: self.label.to_string() }.to_string(),
         }
     }
 }

@@ -13,6 +13,7 @@ use egui::{
 
 use super::numeric::Numeric;
 use super::steps::set_by_reader;
+use crate::messages::ButtonMessage;
 use crate::theme::Palette;
 
 /// How near zero, in points, the handle must come to catch.
@@ -52,7 +53,7 @@ impl Setpoint<'_> {
             let width = (ui.available_width() - ENTRY_WIDTH - 56.0).max(120.0);
             held = self.rail_ui(ui, width, value).is_pointer_button_down_on();
             Numeric::new(
-                &format!("{} exact", self.name),
+                &ButtonMessage::Exact { name: self.name.to_string() }.to_string(),
                 self.unit,
                 self.range.clone(),
                 (self.decimals, self.step, ENTRY_WIDTH),
@@ -60,7 +61,11 @@ impl Setpoint<'_> {
             .ui(ui, value);
             let zero = ui.add_enabled(self.has_zero(), Button::new("0")).on_hover_text("Back to zero (Home)");
             zero.widget_info(|| {
-                WidgetInfo::labeled(Role::Button, ui.is_enabled(), format!("{} to zero", self.name))
+                WidgetInfo::labeled(
+                    Role::Button,
+                    ui.is_enabled(),
+                    ButtonMessage::ToZero { name: self.name.to_string() }.to_string(),
+                )
             });
             if zero.clicked() {
                 *value = 0.0;

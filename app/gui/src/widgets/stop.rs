@@ -3,6 +3,7 @@
 use egui::{Align2, FontId, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
 
 use crate::keys::stop_words;
+use crate::messages::ButtonMessage;
 use crate::theme::Palette;
 
 /// Height in points: big enough to hit in a hurry.
@@ -40,7 +41,7 @@ fn sized_ui(ui: &mut Ui, connected: bool, height: f32) -> Response {
     let painter = ui.painter();
     painter.rect(rect, 6.0, fill, ring, StrokeKind::Inside);
     if height < HEIGHT {
-        let words = format!("STOP ALL  ({keys})");
+        let words = ButtonMessage::StopAll { keys: keys.to_string() }.to_string();
         painter.text(rect.center(), Align2::CENTER_CENTER, words, FontId::proportional(13.5), text);
         return response;
     }

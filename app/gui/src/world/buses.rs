@@ -5,6 +5,7 @@ use egui::{ComboBox, Ui};
 
 use super::{Actions, LABEL_WIDTH, figures_ui, toggle_ui};
 use crate::widgets::{choice_ui, fixed_label_ui, heading_ui};
+use crate::world::messages::WorldMessage;
 
 /// Registers of a device that are shown.
 const SHOWN: usize = 8;
@@ -36,7 +37,11 @@ fn device_ui(ui: &mut Ui, device: &I2cDevice, actions: &mut Actions) {
     const FIRST: u8 = 0x3B;
     let shown = device.registers.iter().skip(FIRST.into()).take(SHOWN);
     let registers: String = shown.map(|value| format!(" {value:02X}")).collect();
-    figures_ui(ui, &format!("{:02X} {} from {FIRST:02X}:{registers}", device.address, device.name));
+    figures_ui(
+        ui,
+        &WorldMessage::Device { address: device.address, name: device.name.clone(), first: FIRST, registers }
+            .to_string(),
+    );
     ui.horizontal(|ui| {
         // 16384 is 1 g, as a 16 bit number with its high byte first.
         for (axis, name) in ["Lay x up", "Lay y up", "Lay z up"].into_iter().enumerate() {
@@ -65,7 +70,7 @@ fn peer_ui(ui: &mut Ui, view: &WorldView, actions: &mut Actions) {
     if view.can_peer != CanPeer::Absent {
         let heard: String =
             view.can_heard.iter().rev().take(SHOWN).rev().map(|byte| format!(" {byte:02X}")).collect();
-        figures_ui(ui, &format!("It heard last:{heard}"));
+        figures_ui(ui, &WorldMessage::Heard { heard }.to_string());
     }
 }
 

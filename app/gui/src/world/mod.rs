@@ -8,8 +8,10 @@ use super::family::Ability;
 use super::model::Model;
 use super::model::world::WorldPanel;
 use crate::widgets::{Numeric, fixed_label_ui, heading_ui};
+use crate::world::messages::WorldMessage;
 
 mod buses;
+pub mod messages;
 mod motor;
 mod pins;
 mod switches;
@@ -106,7 +108,7 @@ fn supply_ui(ui: &mut Ui, view: &WorldView, panel: &mut WorldPanel, has_logic: b
             actions.push(WorldAction::SetBoardCelsius { celsius: Some(celsius) });
         }
     }
-    figures_ui(ui, &format!("{:6.2} V at the bridge {:8.2} A", view.bus_volts, view.battery_amps));
+    figures_ui(ui, &WorldMessage::Bridge { volts: view.bus_volts, amps: view.battery_amps }.to_string());
 }
 
 /// Figures that change by themselves, in digits of one width.

@@ -5,13 +5,15 @@ use brushwork_values::Motor;
 use egui::{Checkbox, Ui};
 
 use super::{Actions, figures_ui, number, row_ui, toggle_ui};
+use crate::messages::NameMessage;
 use crate::model::world::WorldPanel;
 use crate::widgets::{fixed_label_ui, heading_ui};
+use crate::world::messages::WorldMessage;
 
 pub fn motor_ui(ui: &mut Ui, motor: Motor, view: &WorldView, panel: &mut WorldPanel, actions: &mut Actions) {
     ui.separator();
     ui.push_id(motor.index(), |ui| {
-        heading_ui(ui, &format!("Motor {}", motor.index() + 1));
+        heading_ui(ui, &NameMessage::Motor { number: motor.index() + 1 }.to_string());
         truth_ui(ui, motor, view);
         fields_ui(ui, motor, panel, actions);
         faults_ui(ui, motor, view, actions);
@@ -23,17 +25,17 @@ fn truth_ui(ui: &mut Ui, motor: Motor, view: &WorldView) {
     let axis = &view.axes[motor.index()];
     let turns_per_minute = axis.truth.load_radians_per_second * 60.0 / std::f64::consts::TAU;
     let turns = axis.truth.load_radians / std::f64::consts::TAU;
-    figures_ui(ui, &format!("{:9.1} rpm {:9.2} turns {:7.2} A", turns_per_minute, turns, axis.truth.amps));
+    figures_ui(ui, &WorldMessage::Axis { rpm: turns_per_minute, turns, amps: axis.truth.amps }.to_string());
 }
 
 fn fields_ui(ui: &mut Ui, motor: Motor, panel: &mut WorldPanel, actions: &mut Actions) {
     let index = motor.index();
-    let name = format!("{motor} load torque");
+    let name = WorldMessage::LoadTorque { motor }.to_string();
     let load = number(("Load torque", &name), "N·m", -200.0..=200.0, 3);
     if row_ui(ui, &load, &mut panel.load_newton_metres[index]) {
         actions.push(WorldAction::SetLoadTorque { motor, newton_metres: panel.load_newton_metres[index] });
     }
-    let name = format!("{motor} encoder noise");
+    let name = WorldMessage::EncoderNoise { motor }.to_string();
     let noise = number(("Encoder noise", &name), "counts", 0.0..=1000.0, 1);
     if row_ui(ui, &noise, &mut panel.encoder_noise_counts[index]) {
         actions.push(WorldAction::SetEncoderNoise { motor, counts: panel.encoder_noise_counts[index] });

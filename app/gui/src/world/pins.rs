@@ -7,7 +7,9 @@ use egui::{ComboBox, Ui};
 use super::motor::name;
 use super::{Actions, number};
 use crate::family::Family;
+use crate::messages::NameMessage;
 use crate::widgets::{fixed_label_ui, heading_ui};
+use crate::world::messages::WorldMessage;
 
 pub fn pins_ui(
     ui: &mut Ui,
@@ -19,7 +21,9 @@ pub fn pins_ui(
     ui.separator();
     heading_ui(ui, "Input pins");
     for (pin, signal) in view.pins.iter().enumerate() {
-        let label = names.get(pin).map_or_else(|| format!("Pin {}", pin + 1), |name| (*name).to_owned());
+        let label = names
+            .get(pin)
+            .map_or_else(|| NameMessage::Pin { number: pin + 1 }.to_string(), |name| (*name).to_owned());
         ui.push_id(pin, |ui| {
             ui.horizontal(|ui| {
                 fixed_label_ui(ui, &label, if names.is_empty() { 44.0 } else { 84.0 });
@@ -42,7 +46,7 @@ fn pin_ui(
     let combo = ComboBox::from_id_salt("kind").width(112.0).selected_text(text);
     let response = combo.show_ui(ui, |ui| choices_ui(ui, pin, view, motors, actions));
     ui.ctx().accesskit_node_builder(response.response.id, |node| {
-        node.set_label(format!("{label} is connected to"));
+        node.set_label(WorldMessage::ConnectedTo { pin: label.to_string() }.to_string());
     });
     if wired.is_none() {
         value_ui(ui, pin, label, signal, actions);
@@ -95,7 +99,7 @@ fn value_ui(ui: &mut Ui, pin: usize, label: &str, signal: PinSignal, actions: &m
         PinSignal::Pulse { microseconds } => (microseconds, "µs", 500.0..=2500.0, 0),
         PinSignal::Open | PinSignal::Encoder { .. } => return,
     };
-    let name = format!("{label} value");
+    let name = WorldMessage::ValueOf { pin: label.to_string() }.to_string();
     let field = number(("", &name), unit, range, decimals);
     if field.numeric.ui(ui, &mut value).changed() {
         let signal = match signal {
@@ -118,7 +122,7 @@ fn wired_to(view: &WorldView, pin: usize) -> Option<String> {
 }
 
 fn switch_text(motor: Motor, switch: SwitchKind) -> String {
-    format!("{motor} {} switch", name(switch))
+    WorldMessage::Switch { motor, kind: name(switch) }.to_string()
 }
 
 const fn kind_text(signal: PinSignal) -> &'static str {

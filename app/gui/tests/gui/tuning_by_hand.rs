@@ -83,11 +83,11 @@ fn whoever_follows_it_ends_with_an_exact_and_smooth_velocity_loop() {
         let now = advice(&mut bench, Loop::Velocity);
         said.push(format!("{now:?}"));
         match now {
-            Advice::Good(text) if text.contains("You are done") => break,
+            Advice::Good(text) if text.to_string().contains("You are done") => break,
             Advice::Good(_) => bench.press("Next step"),
             Advice::Change(text) => {
-                let label =
-                    button(&text).unwrap_or_else(|| panic!("nothing to press for {text:?}: {said:?}"));
+                let label = button(&text.to_string())
+                    .unwrap_or_else(|| panic!("nothing to press for {text:?}: {said:?}"));
                 bench.press(if label == "I up" { "I up 0.02" } else { label });
             }
             Advice::Wait(_) => {}
@@ -126,11 +126,11 @@ fn whoever_follows_it_ends_with_a_position_loop_that_goes_there_and_is_quiet() {
         let now = advice(&mut bench, Loop::Position);
         said.push(format!("{now:?}"));
         match now {
-            Advice::Good(text) if text.contains("You are done") => break,
+            Advice::Good(text) if text.to_string().contains("You are done") => break,
             Advice::Good(_) => bench.press("Next step"),
             Advice::Change(text) => {
-                let label =
-                    button(&text).unwrap_or_else(|| panic!("nothing to press for {text:?}: {said:?}"));
+                let label = button(&text.to_string())
+                    .unwrap_or_else(|| panic!("nothing to press for {text:?}: {said:?}"));
                 bench.press(label);
                 if label == "I up" {
                     bench.press("5. Max I");

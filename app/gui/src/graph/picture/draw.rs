@@ -12,6 +12,7 @@ use crate::graph::runs::{Align, Run};
 use crate::graph::scale::{DIVISIONS, Scale};
 use crate::graph::trace::{Columns, Trace, View};
 use crate::graph::{Cursors, Mark, MarkKind, Sheet, TriggerMode, TriggerSource};
+use crate::messages::NameMessage;
 use crate::theme::Palette;
 
 /// Room for one figure of the vertical axis.
@@ -258,7 +259,7 @@ impl Scene<'_> {
                 inside.push(Element::Text {
                     at: *at + vec2(4.0, -4.0),
                     anchor: Align2::LEFT_BOTTOM,
-                    text: format!("run {}", run + 1),
+                    text: NameMessage::RunLine { number: run + 1 }.to_string(),
                     size: 9.5,
                     color: curve.color,
                     figures: false,

@@ -7,6 +7,7 @@ use egui::{Align2, Color32, Rect, pos2};
 use super::draw::color_of;
 use super::{Element, Layer, axes};
 use crate::graph::live::LiveGraph;
+use crate::graph::messages::PlotMessage;
 use crate::graph::scale::DIVISIONS;
 use crate::theme::Palette;
 
@@ -31,7 +32,8 @@ impl Legend {
             Some(opened) => opened.name.clone(),
             None => format!("{} {}", graph.files.device, humantime::format_rfc3339_seconds(newest)),
         };
-        let title = format!("Brushwork · {} · {} per division", of.trim(), axes::span_text(division));
+        let title =
+            PlotMessage::Title { of: of.trim().to_string(), span: axes::span_text(division) }.to_string();
         let mut shown = sheet.shown();
         shown.sort_unstable();
         let entry = |channel: usize| {

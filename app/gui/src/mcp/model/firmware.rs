@@ -1,6 +1,7 @@
 //! The firmware window of one link: the file, the risks and whether they were accepted, how far an update is, and what
 //! became of the settings.
 
+use crate::mcp::messages::DownloadMessage;
 use crate::messages::{FirmwareMessage, WindowActMessage};
 use brushwork_link::Message;
 use std::path::Path;
@@ -142,9 +143,10 @@ impl Stage {
                     .to_owned(),
                 None,
             ),
-            Self::Sending { progress: Progress::Writing { pages, of }, .. } => {
-                (format!("Writing page {pages} of {of}."), Some(*pages as f32 / (*of).max(1) as f32))
-            }
+            Self::Sending { progress: Progress::Writing { pages, of }, .. } => (
+                DownloadMessage::WritingPage { page: *pages, of: *of }.to_string(),
+                Some(*pages as f32 / (*of).max(1) as f32),
+            ),
             Self::Idle | Self::Done(_) | Self::Failed(_) => (String::new(), None),
         }
     }

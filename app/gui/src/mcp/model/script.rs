@@ -1,5 +1,6 @@
 //! The download of a script into an MCP.
 
+use crate::mcp::messages::DownloadMessage;
 use brushwork_link::Job;
 use brushwork_mcp_client::messages::McpActMessage;
 use brushwork_mcp_client::script::{Downloaded, ScriptImage, Verified, download};
@@ -18,14 +19,9 @@ fn reported(done: &Downloaded) -> String {
     let verified = match done.verified {
         Verified::Content => "verified".to_owned(),
         Verified::Status => "each block confirmed".to_owned(),
-        Verified::Alike(byte) => {
-            format!("each block answered with 0x{byte:02X}, whose meaning is not public")
-        }
+        Verified::Alike(byte) => DownloadMessage::BlocksAnswered { byte }.to_string(),
     };
     let foreign = if done.is_foreign { " A simulated controller does not run it." } else { "" };
-    format!(
-        "{} bytes in {:.1} s, {verified}. Start Script runs it.{foreign}",
-        done.bytes,
-        done.took.as_secs_f64()
-    )
+    DownloadMessage::Sent { bytes: done.bytes, seconds: done.took.as_secs_f64(), verified, foreign }
+        .to_string()
 }

@@ -1,5 +1,6 @@
 //! The guide through the calibration of an input, in place of its settings.
 
+use crate::mcp::messages::SignalMessage;
 use crate::model::general::{CalibrationStage, GeneralView};
 use egui::{Button, ProgressBar, RichText, Role, Ui, WidgetInfo, vec2};
 
@@ -45,7 +46,7 @@ pub fn calibrate_ui(ui: &mut Ui, general: &mut GeneralView<'_>) {
     for (label, value) in lines {
         ui.horizontal(|ui| {
             crate::widgets::label::fixed_label_ui(ui, label, 80.0);
-            let spoken = format!("Calibration {}", label.to_lowercase());
+            let spoken = SignalMessage::Calibration { what: label.to_lowercase() }.to_string();
             Readout { label: &spoken, unit: "", digits: 10, unit_letters: 0 }.ui(ui, value.as_deref());
         });
     }

@@ -6,6 +6,7 @@ use egui::{Button, Grid, Label, Layout, ProgressBar, RichText, Role, ScrollArea,
 
 use crate::command::{Command, Commands, GuidedAction};
 use crate::family::Family;
+use crate::mcp::messages::McpScreenMessage;
 use crate::model::{GeneralView, Gravity, IndicatorState, LinkView};
 use crate::screens::drive::{arm_ui, notices_ui};
 use crate::screens::general::sheet_parts::indicator_ui;
@@ -59,7 +60,11 @@ fn outputs_ui(ui: &mut Ui, general: &GeneralView<'_>) {
         indicator_ui(ui, IndicatorState::Warning, text);
     } else {
         let names: Vec<String> = outputs.iter().map(|number| format!("DOUT{number}")).collect();
-        indicator_ui(ui, IndicatorState::Ok, &format!("{} clamps over-voltage.", names.join(", ")));
+        indicator_ui(
+            ui,
+            IndicatorState::Ok,
+            &McpScreenMessage::Clamps { outputs: names.join(", ") }.to_string(),
+        );
     }
 }
 
@@ -69,7 +74,7 @@ fn task_ui(ui: &mut Ui, general: &mut GeneralView<'_>) {
     ui.horizontal_wrapped(|ui| {
         for motor in Motor::BOTH {
             let radio = ui.radio_value(&mut test.motor, motor, motor.to_string());
-            let name = format!("Clamp test {motor}");
+            let name = McpScreenMessage::ClampTest { motor }.to_string();
             ui.ctx().accesskit_node_builder(radio.id, |node| node.set_label(name));
         }
         ui.separator();
@@ -107,8 +112,9 @@ fn run_ui(ui: &mut Ui, general: &GeneralView<'_>, link: &LinkView, commands: &mu
             }
             let volts = link.readings.get(Channel::MAIN_BATTERY).unwrap_or(f64::NAN);
             let bar = ProgressBar::new(fraction).desired_width(ui.available_width());
-            let response = ui.add(bar.text(format!("{text} · battery {volts:.1} V")));
-            let spoken = format!("Progress: clamp test, {text}");
+            let response =
+                ui.add(bar.text(McpScreenMessage::WithBattery { text: text.to_string(), volts }.to_string()));
+            let spoken = McpScreenMessage::ClampProgress { text: text.to_string() }.to_string();
             response.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, &spoken));
             return;
         }

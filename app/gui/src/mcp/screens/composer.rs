@@ -7,7 +7,9 @@ use brushwork_values::{Field, hex};
 use egui::{Grid, Label, RichText, ScrollArea, TextEdit, Ui, vec2};
 
 use crate::command::{Command, Commands};
+use crate::mcp::messages::McpScreenMessage;
 use crate::mcp::model::composer::{Composer, Prepared};
+use crate::messages::{NameMessage, PacketMessage};
 use crate::model::{Arming, Connection, Model};
 use crate::theme::Palette;
 use crate::widgets::text_field_ui;
@@ -92,7 +94,7 @@ fn arguments_ui(ui: &mut Ui, composer: &mut Composer, generation: Generation) {
         for (field, text) in fields.into_iter().zip(&mut composer.arguments) {
             ui.label(field.name);
             let response = ui.add(TextEdit::singleline(text).desired_width(110.0));
-            let name = format!("Argument {}", field.name);
+            let name = McpScreenMessage::Argument { name: field.name }.to_string();
             ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name));
             ui.add(Label::new(RichText::new(explained(field)).small()).truncate()).on_hover_text(field.doc);
             ui.end_row();
@@ -103,9 +105,15 @@ fn arguments_ui(ui: &mut Ui, composer: &mut Composer, generation: Generation) {
 /// The range of the raw number, and what one step of it is.
 fn explained(field: &Field) -> String {
     let range = field.raw_range.or(field.kind.limits());
-    let range = range.map_or(String::new(), |(least, most)| format!("{least} to {most}"));
+    let range = range.map_or(String::new(), |(least, most)| {
+        NameMessage::To { from: least.to_string(), to: most.to_string() }.to_string()
+    });
     let symbol = field.unit.symbol();
-    let step = if symbol.is_empty() { String::new() } else { format!(", one is {} {symbol}", field.scale) };
+    let step = if symbol.is_empty() {
+        String::new()
+    } else {
+        McpScreenMessage::OneIs { scale: field.scale, symbol }.to_string()
+    };
     format!("{range}{step}")
 }
 
@@ -117,10 +125,13 @@ fn send_ui(
     commands: &mut Commands,
 ) {
     let bytes = hex(&prepared.bytes);
-    ui.add(Label::new(format!("Will send: {}", prepared.text)).wrap());
-    ui.add(Label::new(RichText::new(format!("Bytes: {bytes}")).monospace()).wrap());
+    ui.add(Label::new(PacketMessage::WillSend { text: prepared.text.clone() }.to_string()).wrap());
+    ui.add(Label::new(RichText::new(PacketMessage::Bytes { bytes }.to_string()).monospace()).wrap());
     if let Some(why) = &prepared.refusal {
-        ui.label(RichText::new(format!("Not sent: {why}.")).color(Palette::of(ui).error));
+        ui.label(
+            RichText::new(PacketMessage::NotSent { why: why.to_string() }.to_string())
+                .color(Palette::of(ui).error),
+        );
     } else if let Some(care) = care(prepared.effect) {
         ui.label(RichText::new(care).color(Palette::of(ui).warning));
     }
@@ -147,7 +158,7 @@ const fn care(effect: Effect) -> Option<&'static str> {
 fn answer_ui(ui: &mut Ui, composer: &Composer) {
     match &composer.answer {
         Some(Ok(answer)) => {
-            ui.add(Label::new(format!("Answer: {answer}")).wrap());
+            ui.add(Label::new(PacketMessage::Answer { answer: answer.to_string() }.to_string()).wrap());
         }
         Some(Err(failure)) => {
             ui.add(Label::new(RichText::new(failure).color(Palette::of(ui).error)).wrap());

@@ -3,6 +3,7 @@
 use brushwork_link::settings::Row;
 use egui::{Button, Label, Layout, RichText, Role, ScrollArea, Ui, WidgetInfo, vec2};
 
+use crate::messages::ButtonMessage;
 use crate::model::{GeneralView, IndicatorState};
 use crate::screens::general::sheet_parts::text_ui;
 
@@ -33,7 +34,7 @@ pub fn conflicts_ui(ui: &mut Ui, general: &mut GeneralView<'_>, height: f32) {
                         ui.add(Label::new(conflict.sentence.to_string()).wrap());
                     });
                     let response = ui.add(Button::new("Go to"));
-                    let spoken = format!("Go to {}", title.unwrap_or_default());
+                    let spoken = ButtonMessage::GoTo { place: title.unwrap_or_default() }.to_string();
                     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &spoken));
                     if response.clicked() {
                         wanted = conflict.keys.first().cloned();

@@ -9,6 +9,7 @@ use egui::{
 };
 
 use crate::command::{Command, Commands};
+use crate::mcp::messages::{DownloadMessage, McpScreenMessage};
 use crate::mcp::model::firmware::{Firmware, FirmwareAction, LISTED, Stage};
 use crate::model::{Model, Sheet};
 use crate::theme::Palette;
@@ -86,7 +87,7 @@ fn installed_ui(ui: &mut Ui, identity: &Identity) {
         for quirk in quirks(family, layout_of(identity.generation), &identity.firmware) {
             ui.strong(quirk.topic);
             let text = ui.add(egui::Label::new(quirk.text).wrap());
-            text.on_hover_text(format!("From: {}", quirk.source));
+            text.on_hover_text(McpScreenMessage::From { source: quirk.source }.to_string());
             ui.end_row();
         }
     });
@@ -183,7 +184,7 @@ fn done_ui(ui: &mut Ui, text: &str, firmware: &Firmware, connected: bool, comman
     }
     ui.weak(text);
     if let Some(backup) = firmware.backup() {
-        ui.weak(format!("The settings from before are kept: {backup}."));
+        ui.weak(DownloadMessage::SettingsKept { backup: backup.to_string() }.to_string());
     }
     match firmware.compared() {
         None if connected && firmware.backup().is_some() => {
@@ -205,7 +206,7 @@ fn differences_ui(ui: &mut Ui, compared: &Compared, commands: &mut Commands) {
         ui.label(line);
     }
     if count > LISTED {
-        ui.weak(format!("and {} more", count - LISTED));
+        ui.weak(McpScreenMessage::AndMore { count: count - LISTED }.to_string());
     }
     if ui.button("Restore from the backup…").clicked() {
         commands.push(Command::OpenSheet(Sheet::Backups));

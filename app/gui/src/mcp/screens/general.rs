@@ -8,6 +8,7 @@ use egui::{Ui, vec2};
 use super::{clamp, conflicts, pin};
 use crate::command::Commands;
 use crate::family::recipe::Goal;
+use crate::messages::NameMessage;
 use crate::model::{GeneralView, IndicatorState, Model, Section, UnitSettings};
 use crate::screens::general::rows::{HEIGHT, MARK_WIDTH};
 use crate::screens::general::sheet_parts::indicator_ui;
@@ -16,7 +17,7 @@ use crate::screens::general::{framed_ui, sections_ui};
 pub fn general_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     framed_ui(ui, model, commands, |ui, model, commands| {
         let count = model.front.settings.unit().map_or(0, |unit| unit.conflicts().len());
-        let found = if count == 0 { "none".to_owned() } else { format!("{count} found") };
+        let found = if count == 0 { "none".to_owned() } else { NameMessage::Found { count }.to_string() };
         let own = [
             (Section::Conflicts, "Conflicts", found),
             (Section::ClampTest, "Voltage clamp test", String::new()),

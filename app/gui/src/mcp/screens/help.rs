@@ -8,6 +8,7 @@ use egui::{Grid, Label, Ui};
 
 use crate::help::list::{Entry, list_ui};
 use crate::help::scrolled_ui;
+use crate::mcp::messages::McpScreenMessage;
 use crate::model::help::Help;
 
 pub fn settings_ui(ui: &mut Ui, help: &mut Help) {
@@ -36,7 +37,7 @@ fn setting_ui(ui: &mut Ui, row: &ReferenceRow) {
     ui.add(Label::new(row.help).wrap());
     ui.add_space(6.0);
     let of_model = if row.depends_on_model {
-        format!(" ({}; depends on the model)", row.example)
+        McpScreenMessage::OnModel { example: row.example.to_string() }.to_string()
     } else {
         String::new()
     };
@@ -49,7 +50,10 @@ fn setting_ui(ui: &mut Ui, row: &ReferenceRow) {
         ("Range", if row.range.is_empty() { String::new() } else { format!("{}{of_model}", row.range) }),
         ("One of", row.choices.join(", ")),
         ("Default", format!("{}{assumed}", row.default)),
-        ("Only", row.family.map(|family| format!("{family} controllers")).unwrap_or_default()),
+        (
+            "Only",
+            row.family.map(|family| McpScreenMessage::OnlyFamily { family }.to_string()).unwrap_or_default(),
+        ),
         ("Generations", generations.join(", ")),
     ];
     lines.extend(row.forms.iter().map(|form| ("On the wire", form_text(form))));
@@ -59,8 +63,11 @@ fn setting_ui(ui: &mut Ui, row: &ReferenceRow) {
 
 fn form_text(form: &ReferenceForm) -> String {
     let (first, last) = (form.first.number(), form.last.number());
-    let span =
-        if first == last { format!("generation {first}") } else { format!("generations {first} to {last}") };
+    let span = if first == last {
+        McpScreenMessage::Generation { number: first }.to_string()
+    } else {
+        McpScreenMessage::Generations { first, last }.to_string()
+    };
     let part =
         |word: &str, text: &str| if text.is_empty() { String::new() } else { format!(", {word} {text}") };
     let locked = if form.locked.is_empty() { String::new() } else { format!(". {}", form.locked) };

@@ -10,6 +10,7 @@ use brushwork_mcp_client::indicators::conditions;
 use brushwork_mcp_wire::packet_serial::led::{BlinkCode, Light, blink_code};
 use egui::{Align2, Color32, RichText, Role, Sense, Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
+use crate::mcp::messages::McpScreenMessage;
 use crate::model::connection::Connection;
 use crate::theme::Palette;
 use crate::widgets::heading::heading_ui;
@@ -72,8 +73,15 @@ fn lit_by_simulation(connection: &Connection) -> Option<[bool; 3]> {
 /// "ERR flashes 3 times: logic battery high: the motors freewheel until a restart".
 fn sentence(code: &BlinkCode) -> String {
     let err = code.err.words();
-    let stat2 = if code.stat2 == Light::Lit { "a bridge drives" } else { "no bridge drives" };
-    format!("ERR {err}: {}. STAT2 {}: {stat2}. STAT1 {}", code.meaning, code.stat2.words(), stat1(code))
+    let bridge = if code.stat2 == Light::Lit { "a bridge drives" } else { "no bridge drives" };
+    McpScreenMessage::Leds {
+        err,
+        meaning: code.meaning.to_string(),
+        bridge,
+        stat2: code.stat2.words(),
+        stat1: stat1(code),
+    }
+    .to_string()
 }
 
 fn stat1(code: &BlinkCode) -> String {
@@ -89,7 +97,13 @@ fn led_ui(ui: &mut Ui, name: &str, light: Light, lit: bool) {
     let palette = Palette::of(ui);
     let (rect, response) = ui.allocate_exact_size(vec2(LED_WIDTH, HEIGHT), Sense::hover());
     let words = light.words();
-    response.widget_info(|| WidgetInfo::labeled(Role::Status, true, format!("LED {name}: {words}")));
+    response.widget_info(|| {
+        WidgetInfo::labeled(
+            Role::Status,
+            true,
+            McpScreenMessage::Led { name: name.to_string(), light: words.to_string() }.to_string(),
+        )
+    });
     let color = if name == "ERR" { palette.error } else { palette.ok };
     let center = pos2(rect.left() + 14.0, rect.center().y);
     let fill = if lit { color } else { Color32::TRANSPARENT };

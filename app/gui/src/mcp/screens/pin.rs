@@ -14,6 +14,7 @@ use egui::{
 use super::calibrate::calibrate_ui;
 use super::signal_graph::signal_graph_ui;
 use crate::command::{Command, Commands};
+use crate::mcp::messages::SignalMessage;
 use crate::model::{GeneralView, Section, UnitSettings};
 use crate::screens::general::rows::{self, Columns};
 use crate::widgets::readout::Readout;
@@ -96,7 +97,7 @@ fn head_ui(ui: &mut Ui, general: &mut GeneralView<'_>, pin: usize, commands: &mu
             _ => None,
         };
         let response = ui.add_enabled(why_not.is_none(), Button::new("Calibrate…"));
-        let spoken = format!("Calibrate {name}");
+        let spoken = SignalMessage::Calibrate { pin: name.to_string() }.to_string();
         response.widget_info(|| WidgetInfo::labeled(Role::Button, why_not.is_none(), &spoken));
         let note = why_not.unwrap_or(
             "Finds minimum, center and maximum by moving the input. Meanwhile it commands nothing and triggers nothing.",
@@ -136,7 +137,7 @@ fn mode_ui(ui: &mut Ui, unit: &mut UnitSettings, pin: usize, name: &str) {
             }
         }
     });
-    let spoken = format!("{name}: mode");
+    let spoken = SignalMessage::Mode { pin: name.to_string() }.to_string();
     ui.ctx().accesskit_node_builder(opened.response.id, |node| node.set_label(spoken));
 }
 
@@ -175,7 +176,7 @@ fn status_ui(ui: &mut Ui, general: &GeneralView<'_>, pin: usize, signal: Option<
     for (label, value, unit) in lines {
         ui.horizontal(|ui| {
             crate::widgets::label::fixed_label_ui(ui, label, 130.0);
-            let spoken = format!("Signal {}", label.to_lowercase());
+            let spoken = SignalMessage::Signal { what: label.to_lowercase() }.to_string();
             let readout = Readout { label: &spoken, unit, digits: 9, unit_letters: 7 };
             readout.ui(ui, value.as_deref());
         });
@@ -219,7 +220,7 @@ fn extra_ui(ui: &mut Ui, unit: &mut UnitSettings, row: &Row, pin: usize, signal:
             let reading = signal.and_then(|signal| unit.reading(pin, signal));
             let (value, note) = set_from(reading);
             let response = ui.add_enabled(enabled && value.is_some(), Button::new("Set").small());
-            let spoken = format!("Set {} from the live signal", row.title());
+            let spoken = SignalMessage::SetFromLive { title: row.title() }.to_string();
             response.widget_info(|| WidgetInfo::labeled(Role::Button, value.is_some(), &spoken));
             if response.on_hover_text(note).on_disabled_hover_text(note).clicked()
                 && let Some(value) = value

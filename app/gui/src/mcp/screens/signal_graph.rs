@@ -10,6 +10,7 @@ use egui::{
     WidgetInfo, pos2, vec2,
 };
 
+use crate::mcp::messages::SignalMessage;
 use crate::model::settings::UnitSettings;
 use crate::theme::Palette;
 use crate::widgets::steps::{Steps, set_by_reader};
@@ -200,12 +201,19 @@ fn live_point(unit: &UnitSettings, pin: usize, signal: Option<PinSignal>) -> Opt
 fn spoken(name: &str, shape: &SignalShape, live: Option<(f64, f64)>) -> String {
     let live = live.map_or_else(
         || "no live signal".to_owned(),
-        |(reading, share)| format!("signal at {reading}, {:.1} %", share * 100.0),
+        |(reading, share)| SignalMessage::At { reading, percent: share * 100.0 }.to_string(),
     );
-    format!(
-        "Signal graph of {name}: {} to {} around {}, deadband {}, power exponent {}, power minimum {}; {live}",
-        shape.min, shape.max, shape.center, shape.deadband, shape.power_exponent, shape.power_min
-    )
+    SignalMessage::Graph {
+        name: name.to_string(),
+        min: shape.min,
+        max: shape.max,
+        center: shape.center,
+        deadband: shape.deadband,
+        exponent: shape.power_exponent,
+        least: shape.power_min,
+        live,
+    }
+    .to_string()
 }
 
 fn paint_ground(ui: &Ui, frame: &Frame, shape: &SignalShape) {
@@ -285,7 +293,7 @@ fn handle_ui(ui: &mut Ui, frame: &Frame, shape: &SignalShape, bend: Bend, pin: u
     wanted = set_by_reader(ui, &response).unwrap_or(wanted).clamp(low, high.max(low));
     describe(ui, &response, bend, value, (low, high));
     paint_handle(ui, &response, place);
-    let note = format!("{}: {value}. Drag it, or use the arrow keys.", bend.name());
+    let note = SignalMessage::Handle { name: bend.name(), value }.to_string();
     response.on_hover_text(note);
     (wanted != value && ui.is_enabled()).then_some(wanted)
 }

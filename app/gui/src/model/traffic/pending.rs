@@ -3,6 +3,7 @@
 use brushwork_link::Message;
 use brushwork_link::device::Drive;
 
+use crate::messages::PacketMessage;
 use crate::model::{Connection, Screen};
 
 /// One packet that waits.
@@ -32,7 +33,10 @@ pub fn pending(connection: &Connection, screen: Screen) -> (Vec<Pending>, Vec<Me
     {
         Some(Ok(plan)) => {
             let steps = plan.steps.iter().filter_map(|step| {
-                Some(packet(format!("Write: {}", step.title()), step.bytes(address, generation).ok()?))
+                Some(packet(
+                    PacketMessage::Write { step: step.title().to_string() }.to_string(),
+                    step.bytes(address, generation).ok()?,
+                ))
             });
             packets.extend(steps);
         }

@@ -15,7 +15,9 @@ use super::drive::to_send;
 use super::{MotionMindConnection, words};
 use crate::family::path::{BACK_UP, PathStep, Place, SAVE, ShownBy, Step};
 use crate::family::{Ability, ActiveIndicator, Family, Figure, Figures, Known, Own, SettingsWords, Sliders};
+use crate::messages::NameMessage;
 use crate::model::{HelpPage, IndicatorInfo, IndicatorState, Screen, Simulated, Tab, state_of};
+use crate::motion_mind::messages::MindMessage;
 use crate::tune::Loop;
 
 #[derive(Debug)]
@@ -124,7 +126,11 @@ impl Family for MotionMind {
 
     fn unit_row(&self, identity: &Identity) -> Option<(&'static str, String)> {
         let facts = MotionMindFacts::of(identity)?;
-        Some(("Switches", format!("{}; {} protocol", facts.mode, facts.protocol)))
+        Some((
+            "Switches",
+            MindMessage::Switches { mode: facts.mode.to_string(), protocol: facts.protocol.to_string() }
+                .to_string(),
+        ))
     }
 
     fn saves(&self, command: u8, _identity: &Identity) -> Option<bool> {
@@ -164,7 +170,7 @@ impl Family for MotionMind {
     }
 
     fn address_label(&self, address: u8) -> String {
-        format!("unit {address}")
+        NameMessage::Unit { address: address.to_string() }.to_string()
     }
 
     fn scan_cost(&self) -> &'static str {

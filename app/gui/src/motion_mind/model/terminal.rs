@@ -9,6 +9,7 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use crate::messages::WindowTypedMessage;
+use crate::motion_mind::messages::MindMessage;
 use brushwork_link::device::Event;
 use brushwork_motion_mind_client::{MotionMindFacts, describe_received, describe_sent};
 use brushwork_motion_mind_wire::{
@@ -110,10 +111,7 @@ impl Understood {
             );
         }
         if self.address.get() != selected {
-            return Some(format!(
-                "this is for {}, and the link speaks to unit {selected}. Select the unit at the left",
-                self.address
-            ));
+            return Some(MindMessage::ForOther { address: self.address.to_string(), selected }.to_string());
         }
         matches!(self.command.effect(), Effect::Motion | Effect::RelativeMotion)
             .then(|| "this moves the motor. Use the screens that drive, which are armed first".to_owned())
@@ -285,7 +283,7 @@ impl Terminal {
     pub fn send_as_typed(&mut self, facts: MotionMindFacts) -> Option<Sending> {
         let bytes = self.as_typed(facts).ok()?;
         let meaning = describe_sent(&bytes, facts.protocol).text;
-        Some(self.send_bytes(bytes, facts.protocol, format!("as typed: {meaning}")))
+        Some(self.send_bytes(bytes, facts.protocol, MindMessage::AsTyped { meaning }.to_string()))
     }
 
     fn send_bytes(&mut self, bytes: Vec<u8>, protocol: Protocol, meaning: String) -> Sending {

@@ -4,7 +4,9 @@ use brushwork_link::settings::SettingValue;
 use brushwork_motion_mind_wire::{Bit, FUNCTION_BITS, FUNCTION2_BITS, Register, STATUS_BITS};
 use egui::{Button, Label, RichText, Role, Ui, WidgetInfo, vec2};
 
+use crate::messages::ButtonMessage;
 use crate::model::{Connection, IndicatorState};
+use crate::motion_mind::messages::RegisterMessage;
 use crate::motion_mind::model::registers::bit_key;
 
 /// The bits of a register, where it has named ones.
@@ -48,7 +50,9 @@ pub fn bits_ui(ui: &mut Ui, connection: &mut Connection, register: &'static Regi
         } else {
             measured_ui(ui, connection, register, bit);
         }
-        let means = Label::new(RichText::new(format!("Set: {}.", bit.set_means)).small().weak());
+        let means = Label::new(
+            RichText::new(RegisterMessage::BitSet { means: bit.set_means }.to_string()).small().weak(),
+        );
         ui.indent(bit.number, |ui| ui.add(means.wrap()));
         ui.add_space(3.0);
     }
@@ -74,7 +78,7 @@ fn setting_ui(ui: &mut Ui, connection: &mut Connection, register: &Register, bit
         if unit.is_edited(&key) {
             IndicatorState::Warning.ui(ui, vec2(14.0, 14.0), 5.0);
             let revert = ui.add(Button::new("Revert").small());
-            let name = format!("Revert {spoken}");
+            let name = ButtonMessage::Revert { title: spoken.to_string() }.to_string();
             revert.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
             if revert.on_hover_text("Back to what the unit has").clicked() {
                 unit.revert(&key);

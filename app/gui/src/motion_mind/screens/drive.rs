@@ -7,6 +7,7 @@ use egui::{Button, Label, RichText, Ui};
 
 use crate::command::{Command, Commands};
 use crate::model::{Model, Screen};
+use crate::motion_mind::messages::MindMessage;
 use crate::motion_mind::model::Driven;
 use crate::motion_mind::model::drive::{LOOPS_PER_S, VELOCITY_RANGE};
 use crate::screens::drive::{Output, drive_ui, motor_ui, on_release_ui, options_ui, pace_ui};
@@ -94,7 +95,7 @@ pub fn velocity_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
                 &mut reach.top_counts_per_loop,
             );
             let asked = model.front.velocity.setpoints.values[0];
-            let text = format!("Asked: {asked:.0} counts/loop = {:.0} counts/s", asked * LOOPS_PER_S);
+            let text = MindMessage::Asked { per_loop: asked, per_s: asked * LOOPS_PER_S }.to_string();
             ui.weak(text);
         });
     });

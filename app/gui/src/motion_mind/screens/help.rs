@@ -8,6 +8,7 @@ use egui::{Label, Ui};
 use crate::help::list::{Entry, list_ui};
 use crate::help::scrolled_ui;
 use crate::model::help::Help;
+use crate::motion_mind::messages::RegisterMessage;
 use brushwork_core::words::capital;
 
 /// What a person has to know beside the tables (Motion Mind manual, chapters 3 to 6).
@@ -144,7 +145,7 @@ fn pages() -> Vec<Page> {
     let reference = reference();
     let guide = GUIDE.iter().map(|(title, lines)| {
         page(
-            format!("guide {title}"),
+            format!("guide:{title}"),
             (*title).to_owned(),
             lines.iter().map(|line| (*line).to_owned()).collect(),
         )
@@ -159,30 +160,35 @@ fn pages() -> Vec<Page> {
 fn command_page(command: &CommandEntry) -> Page {
     let mut lines = vec![
         format!("{}.", capital(command.help.trim_end_matches('.'))),
-        format!("Binary: {}", command.frame),
+        RegisterMessage::Binary { frame: command.frame.to_string() }.to_string(),
     ];
     match command.line.is_empty() {
         true => lines.push("It has no form in text.".to_owned()),
-        false => lines.push(format!("Text: {}", command.line)),
+        false => lines.push(RegisterMessage::Text { line: command.line.to_string() }.to_string()),
     }
-    page(format!("command {}", command.number), command.name.to_owned(), lines)
+    page(format!("command:{}", command.number), command.name.to_owned(), lines)
 }
 
 fn register_page<'a>(register: &RegisterEntry, bits: impl Iterator<Item = &'a BitEntry>) -> Page {
     let access =
         if register.writable { "Written by WRITE and WRITE_STORE." } else { "The unit alone changes it." };
-    let bytes = format!("{} byte{} on the wire.", register.bytes, if register.bytes == 1 { "" } else { "s" });
-    let range = format!("Range {} to {}.", register.min, register.max);
+    let bytes = super::registers::width_text(register.bytes);
+    let range = RegisterMessage::Range { min: register.min, max: register.max }.to_string();
     let unit = match register.unit {
         "" => String::new(),
-        unit => format!("One step is {} {unit}.", register.scale),
+        unit => RegisterMessage::Step { scale: register.scale, unit }.to_string(),
     };
-    let default = register.default.map_or_else(String::new, |value| format!("Factory value {value}."));
+    let default =
+        register.default.map_or_else(String::new, |value| RegisterMessage::Factory { value }.to_string());
     let facts = [access.to_owned(), bytes, range, unit, default];
     let facts: Vec<String> = facts.into_iter().filter(|fact| !fact.is_empty()).collect();
     let mut lines = vec![format!("{}.", capital(register.help.trim_end_matches('.'))), facts.join(" ")];
-    lines.extend(bits.map(|bit| format!("Bit {} {}: {}.", bit.bit, bit.name, bit.set_means)));
-    page(format!("register {}", register.number), format!("{} {}", register.number, register.name), lines)
+    lines.extend(
+        bits.map(|bit| {
+            RegisterMessage::Bit { bit: bit.bit, name: bit.name, means: bit.set_means }.to_string()
+        }),
+    );
+    page(format!("register:{}", register.number), format!("{} {}", register.number, register.name), lines)
 }
 
 #[cfg(test)]

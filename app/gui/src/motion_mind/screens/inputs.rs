@@ -7,6 +7,7 @@ use egui::{Button, Frame, Label, Margin, ProgressBar, RichText, Role, Stroke, Ui
 use crate::command::{Command, Commands};
 use crate::model::{Connection, IndicatorState, Model};
 use crate::motion_mind::MindAction;
+use crate::motion_mind::messages::MindMessage;
 use crate::motion_mind::model::radio::{STEP_MS, Stage, WIDE};
 use crate::motion_mind::model::registers::in_unit;
 use crate::screens::title_ui;
@@ -126,7 +127,7 @@ fn pulse_ui(ui: &mut Ui, connection: &Connection, count: Option<i64>) {
     let bad =
         connection.link.status.as_ref().is_some_and(|report| report.word & u32::from(status::BADRC) != 0);
     let text = match count {
-        Some(count) => format!("Pulse now {:.3} ms ({count})", count as f64 * STEP_MS),
+        Some(count) => MindMessage::PulseNow { milliseconds: count as f64 * STEP_MS, count }.to_string(),
         None => "Pulse not read yet".to_owned(),
     };
     ui.horizontal(|ui| {
@@ -151,7 +152,7 @@ fn stage_ui(ui: &mut Ui, model: &mut Model, count: Option<i64>, is_position: boo
         }
     }
     if let Some(end) = model.front.mind().radio.reached() {
-        ui.label(format!("Farthest so far {:.3} ms ({end})", end as f64 * STEP_MS));
+        ui.label(MindMessage::Farthest { milliseconds: end as f64 * STEP_MS, count: end }.to_string());
     }
     if let Some([max, min, band]) = model.front.mind().radio.result(is_position) {
         for (name, value) in [("RCMAX", max), ("RCMIN", min), ("RCBAND", band)] {

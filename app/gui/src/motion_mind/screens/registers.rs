@@ -13,6 +13,7 @@ use egui::{
 use super::bits::{bits_ui, has_bits};
 use crate::command::Commands;
 use crate::model::{Connection, IndicatorState, Model, UnitSettings};
+use crate::motion_mind::messages::RegisterMessage;
 use crate::motion_mind::model::registers::{in_unit, key};
 use crate::screens::general::{editor, framed_ui};
 use crate::theme::{self, Palette};
@@ -108,7 +109,7 @@ fn row_ui(ui: &mut Ui, connection: &mut Connection, register: &'static Register,
                 ui.add(Button::selectable(is_chosen, register.name).truncate())
             })
             .inner;
-        let spoken = format!("Register {}", register.name);
+        let spoken = RegisterMessage::Named { name: register.name }.to_string();
         name.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, &spoken));
         wants |= name.on_hover_text(register.help).clicked();
         ui.allocate_ui_with_layout(vec2(WANTED_WIDTH, HEIGHT), Layout::left_to_right(Align::Center), |ui| {
@@ -116,8 +117,10 @@ fn row_ui(ui: &mut Ui, connection: &mut Connection, register: &'static Register,
             wants |= wanted_ui(ui, connection, register);
         });
         let (ram, eeprom) = (ram_text(connection, register), eeprom_text(connection, register));
-        let value = |ui: &mut Ui, copy: &str, text: &str, weak| {
-            figure_ui(ui, text, &format!("{} in {copy}: {text}", register.name), VALUE_WIDTH, weak);
+        let value = |ui: &mut Ui, copy: &'static str, text: &str, weak| {
+            let spoken =
+                RegisterMessage::In { name: register.name, copy, value: text.to_owned() }.to_string();
+            figure_ui(ui, text, &spoken, VALUE_WIDTH, weak);
         };
         value(ui, "RAM", &ram, false);
         if register.is_writable() {
@@ -137,9 +140,9 @@ fn wanted_ui(ui: &mut Ui, connection: &mut Connection, register: &'static Regist
     if has_bits(register) {
         let is_chosen = connection.mind().register == register.number;
         let word = connection.word_wanted(register);
-        let shown = word.map_or_else(|| "Bits".to_owned(), |word| format!("0x{word:04X} bits"));
+        let shown = word.map_or_else(|| "Bits".to_owned(), |word| RegisterMessage::Bits { word }.to_string());
         let response = ui.add(Button::selectable(is_chosen, shown).frame_when_inactive(true));
-        let spoken = format!("Bits of {}", register.name);
+        let spoken = RegisterMessage::BitsOf { name: register.name }.to_string();
         response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, &spoken));
         return response.clicked();
     }
@@ -169,14 +172,17 @@ fn mark(connection: &Connection, register: &Register) -> Option<(IndicatorState,
         return Some((IndicatorState::Error, format!("{}: {trouble}", register.name)));
     }
     if rows.iter().any(|row| unit.is_edited(&row.key)) {
-        return Some((IndicatorState::Warning, format!("{} is changed and not written", register.name)));
+        return Some((
+            IndicatorState::Warning,
+            RegisterMessage::IsChanged { name: register.name }.to_string(),
+        ));
     }
     let eeprom = unit.eeprom()?;
     let differs = rows.iter().any(|row| {
         let (ram, kept) = (unit.on_controller(&row.key), eeprom.get(&row.key));
         ram.is_some() && kept.is_some() && ram != kept
     });
-    differs.then(|| (IndicatorState::Active, format!("{} in RAM differs from EEPROM", register.name)))
+    differs.then(|| (IndicatorState::Active, RegisterMessage::Differs { name: register.name }.to_string()))
 }
 
 /// The rows of the settings table that a register is made of: one, or one for each bit.
@@ -250,7 +256,7 @@ fn panel_ui(ui: &mut Ui, connection: &mut Connection) {
     frame.inner_margin(Margin::symmetric(10, 8)).show(ui, |ui| {
         ui.set_width(ui.available_width());
         ui.set_height(ui.available_height() - 2.0);
-        ui.strong(format!("{} (register {})", register.name, register.number));
+        ui.strong(RegisterMessage::Head { name: register.name, number: register.number }.to_string());
         ScrollArea::vertical().id_salt(("register", register.number)).auto_shrink(false).show(ui, |ui| {
             about_ui(ui, connection, register);
             if has_bits(register) {
@@ -279,7 +285,7 @@ fn about_ui(ui: &mut Ui, connection: &Connection, register: &Register) {
     ui.add(Label::new(RichText::new(facts(register)).weak()).wrap());
     let raw = connection.register(register.name);
     if let Some(text) = raw.and_then(|raw| in_unit(register, raw)) {
-        ui.add(Label::new(format!("Now {text}.")).wrap());
+        ui.add(Label::new(RegisterMessage::Now { text }.to_string()).wrap());
     }
 }
 
@@ -288,15 +294,22 @@ fn facts(register: &Register) -> String {
     let mut text =
         if register.is_writable() { String::new() } else { "The unit alone changes it. ".to_owned() };
     if !has_bits(register) {
-        text += &format!("Range {} to {}", register.range.start(), register.range.end());
+        text +=
+            &RegisterMessage::From { min: *register.range.start(), max: *register.range.end() }.to_string();
         let step = in_unit(register, 1).filter(|_| register.scale < 1.0 && register.name != "THERMISTOR");
-        text += &step.map_or(". ".to_owned(), |step| format!(", one is {step}. "));
+        text += &step.map_or(". ".to_owned(), |step| RegisterMessage::OneIs { step }.to_string());
     }
     if let Some(default) = register.default {
-        text += &format!("Factory value {default}. ");
+        text += &format!("{} ", RegisterMessage::Factory { value: default });
     }
-    let bytes = register.kind.bytes();
-    text + &format!("{bytes} byte{} on the wire.", if bytes == 1 { "" } else { "s" })
+    text + &width_text(register.kind.bytes())
+}
+
+pub fn width_text(bytes: usize) -> String {
+    match bytes {
+        1 => RegisterMessage::OneByte.to_string(),
+        bytes => RegisterMessage::Bytes { bytes }.to_string(),
+    }
 }
 
 /// What a power cycle would change of it.
@@ -308,7 +321,7 @@ fn unsaved_ui(ui: &mut Ui, connection: &Connection, register: &Register) {
         |each: &Difference| each.left.is_some() && each.right.is_some() && of_it.contains(&each.key.as_str());
     for difference in diff(unit.table(), eeprom, ram).into_iter().filter(both) {
         if let Some(row) = unit.table().row(&difference.key) {
-            let text = format!("EEPROM -> RAM: {}", difference.describe(row));
+            let text = RegisterMessage::Unsaved { difference: difference.describe(row) }.to_string();
             ui.add(Label::new(RichText::new(text).color(Palette::of(ui).accent)).wrap());
         }
     }

@@ -6,6 +6,7 @@ use egui::{Button, Label, RichText, Ui};
 use crate::command::{Command, Commands};
 use crate::model::Model;
 use crate::motion_mind::MindAction;
+use crate::motion_mind::messages::MindMessage;
 use crate::motion_mind::model::steps::{Outcome, STAGES, prepared};
 use crate::theme::{self};
 
@@ -65,7 +66,7 @@ fn held_ui(ui: &mut Ui, model: &Model) {
             ui.spacing_mut().item_spacing.x = 4.0;
             ui.label(RichText::new(name).small().weak());
             let figure = ui.label(RichText::new(&text).text_style(theme::figures()));
-            let spoken = format!("{name} held: {text}");
+            let spoken = MindMessage::Held { name, value: text.clone() }.to_string();
             figure.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &spoken));
         });
     }
@@ -80,22 +81,34 @@ fn outcome_ui(ui: &mut Ui, model: &Model) {
         (false, None) => "No step yet. Use Step + and − Step above; their size is beside them.".to_owned(),
     };
     let label = ui.add(Label::new(&text).truncate());
-    label.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("Last step: {text}")));
+    label.widget_info(|| {
+        egui::WidgetInfo::labeled(
+            egui::Role::Label,
+            true,
+            MindMessage::LastStep { text: text.clone() }.to_string(),
+        )
+    });
     let advice = steps.advice();
     let reported = ui.add(Label::new(RichText::new(advice).strong()).wrap());
-    reported.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, format!("Advice: {advice}")));
+    reported.widget_info(|| {
+        egui::WidgetInfo::labeled(
+            egui::Role::Label,
+            true,
+            MindMessage::Advice { advice: advice.to_string() }.to_string(),
+        )
+    });
 }
 
 fn figures_text(last: Outcome) -> String {
     let figures = &last.figures;
     let seconds =
         |time: Option<f64>| time.map_or_else(|| "not reached".to_owned(), |time| format!("{time:.2} s"));
-    format!(
-        "Step of {:.0} counts: rise {}, overshoot {:.0} %, settled {}, off by {:.0} counts at the end",
-        last.step_counts,
-        seconds(figures.rise_time_s),
-        figures.overshoot * 100.0,
-        seconds(figures.settling_time_s),
-        figures.final_error
-    )
+    MindMessage::Step {
+        counts: last.step_counts,
+        rise: seconds(figures.rise_time_s),
+        overshoot_percent: figures.overshoot * 100.0,
+        settled: seconds(figures.settling_time_s),
+        off: figures.final_error,
+    }
+    .to_string()
 }

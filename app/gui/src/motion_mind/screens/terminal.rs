@@ -5,6 +5,7 @@ use brushwork_motion_mind_wire::Protocol;
 use egui::{ComboBox, Key, Label, RichText, ScrollArea, Ui, vec2};
 
 use crate::command::{Command, Commands};
+use crate::messages::PacketMessage;
 use crate::model::Model;
 use crate::motion_mind::model::terminal::{Entry, Form, Terminal, Understood};
 use crate::screens::title_ui;
@@ -72,7 +73,9 @@ fn entry_ui(ui: &mut Ui, entry: &Entry) {
     }
     ui.indent((&entry.sent, "answer"), |ui| match &entry.answer {
         None => ui.label("waiting for the answer …"),
-        Some(Ok(answer)) => ui.add(Label::new(format!("Answer: {answer}")).wrap()),
+        Some(Ok(answer)) => {
+            ui.add(Label::new(PacketMessage::Answer { answer: answer.to_string() }.to_string()).wrap())
+        }
         Some(Err(why)) => ui.add(Label::new(RichText::new(why).color(palette.error)).wrap()),
     });
 }
@@ -137,7 +140,9 @@ fn understood_ui(
     let palette = Palette::of(ui);
     let forms =
         [understood.line(), understood.bytes()].into_iter().flatten().collect::<Vec<_>>().join("  |  ");
-    ui.add(Label::new(format!("Means: {}", understood.meaning())).truncate());
+    ui.add(
+        Label::new(PacketMessage::Means { meaning: understood.meaning().to_string() }.to_string()).truncate(),
+    );
     ui.add(Label::new(RichText::new(forms).monospace().weak()).truncate());
     let refusal = understood.refusal(address);
     ui.horizontal(|ui| {
@@ -148,7 +153,13 @@ fn understood_ui(
             commands.push(sending.into());
         }
         if let Some(why) = &refusal {
-            ui.add(Label::new(RichText::new(format!("Not sent: {why}.")).color(palette.error)).truncate());
+            ui.add(
+                Label::new(
+                    RichText::new(PacketMessage::NotSent { why: why.to_string() }.to_string())
+                        .color(palette.error),
+                )
+                .truncate(),
+            );
         } else if let Some(care) = understood.care() {
             ui.add(Label::new(RichText::new(care).color(palette.warning)).truncate());
         }

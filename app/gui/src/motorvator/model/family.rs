@@ -12,6 +12,7 @@ use brushwork_values::Motor;
 use super::MotorvatorConnection;
 use crate::family::{Ability, Family, Figure, Figures, Known, Own, SettingsWords, Sliders};
 use crate::model::{IndicatorInfo, Screen, Simulated};
+use crate::motorvator::messages::BoardMessage;
 
 #[derive(Debug)]
 pub struct Motorvator;
@@ -71,7 +72,7 @@ impl Family for Motorvator {
     fn unit_row(&self, identity: &Identity) -> Option<(&'static str, String)> {
         // Whether it answers now its indicator tells.
         let version = MotorvatorFacts::of(identity)?.library?;
-        Some(("Host library", format!("version {version}")))
+        Some(("Host library", BoardMessage::Version { version: version.to_string() }.to_string()))
     }
 
     fn simulated(&self) -> Vec<(&'static str, &'static str)> {
@@ -84,7 +85,10 @@ impl Family for Motorvator {
     }
 
     fn address_label(&self, address: u8) -> String {
-        Half::of(address).map_or_else(|| address.to_string(), |half| format!("motors {}", half.letters()))
+        Half::of(address).map_or_else(
+            || address.to_string(),
+            |half| BoardMessage::Motors { letters: half.letters() }.to_string(),
+        )
     }
 
     fn to_send(&self, scope: ArmScope, sliders: Sliders) -> Option<Drive> {

@@ -9,6 +9,7 @@ use brushwork_motorvator_wire::{FRAME_BYTES, LINE_END, Order, line_of_host};
 
 use crate::command::Command;
 use crate::motorvator::action::StartProgram;
+use crate::motorvator::messages::BoardMessage;
 
 /// Lines kept; the oldest go first.
 const KEPT: usize = 500;
@@ -54,7 +55,7 @@ pub fn line_of(typed: &str) -> Result<Vec<u8>, String> {
     }
     let bytes = bytes_of(typed)?;
     if bytes.len() > FRAME_BYTES {
-        return Err(format!("These are {} bytes; a frame has {FRAME_BYTES}.", bytes.len()));
+        return Err(BoardMessage::TooLong { bytes: bytes.len(), most: FRAME_BYTES }.to_string());
     }
     Ok(line_of_host(&bytes))
 }
@@ -73,10 +74,8 @@ fn bytes_of(typed: &str) -> Result<Vec<u8>, String> {
         for word in
             part.split(|letter: char| letter.is_whitespace() || letter == ',').filter(|word| !word.is_empty())
         {
-            bytes.push(
-                word.parse()
-                    .map_err(|_| format!("\"{word}\" is no byte: use 0 to 255, or a text in quotes."))?,
-            );
+            bytes
+                .push(word.parse().map_err(|_| BoardMessage::NoByte { word: word.to_string() }.to_string())?);
         }
     }
     if typed.matches('"').count() % 2 == 1 {

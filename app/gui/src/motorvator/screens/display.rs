@@ -5,6 +5,7 @@ use brushwork_motorvator_wire::host::characters_text;
 use egui::{Align2, FontId, RichText, Role, Sense, Stroke, Ui, WidgetInfo, vec2};
 
 use crate::model::Connection;
+use crate::motorvator::messages::BoardMessage;
 use crate::theme::Palette;
 use crate::widgets::heading::heading_ui;
 
@@ -19,7 +20,7 @@ pub fn display_ui(ui: &mut Ui, connection: &Connection) {
     ui.horizontal(|ui| {
         let (place, response) = ui.allocate_exact_size(vec2(2.0 * SIZE.x, SIZE.y), Sense::hover());
         let text = shown.map_or_else(|| "  ".to_owned(), characters_text);
-        let label = format!("Display {text}");
+        let label = BoardMessage::Display { text: text.clone() }.to_string();
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &label));
         ui.painter().rect_stroke(place, 3.0, Stroke::new(1.0, palette.line), egui::StrokeKind::Inside);
         for (index, letter) in text.chars().enumerate() {
@@ -36,7 +37,7 @@ pub fn display_ui(ui: &mut Ui, connection: &Connection) {
                 Some(_) => "as at the start",
             };
             ui.vertical(|ui| {
-                ui.label(format!("Input {number}"));
+                ui.label(BoardMessage::Input { number }.to_string());
                 ui.label(RichText::new(word).small().weak());
             });
         }

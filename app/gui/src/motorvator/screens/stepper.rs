@@ -6,6 +6,7 @@ use egui::{Button, Label, RichText, Role, Ui, WidgetInfo};
 
 use crate::command::Commands;
 use crate::model::Model;
+use crate::motorvator::messages::BoardMessage;
 use crate::motorvator::model::search::Stage;
 use crate::motorvator::model::stepper::{Phase, Stepper};
 use crate::screens::drive::{drive_ui, options_ui, pace_ui};
@@ -100,15 +101,15 @@ fn search_ui(ui: &mut Ui, stepper: &mut Stepper, half: Half, armed: bool) {
         };
         let config = search.config().statement(half.number());
         let text = match (search.stage, &stepper.phase) {
-            (Stage::Found, _) => format!("Found, with a fifth more: {config}. Put this line into your program."),
+            (Stage::Found, _) => BoardMessage::Found { config }.to_string(),
             (Stage::Hopeless, _) => {
                 "It loses steps at the slowest speed too. See whether it gets power, and whether its coils are wired right.".to_owned()
             }
             (Stage::Start | Stage::Top, Phase::Asks) => {
-                format!("Trial {} with {config} is over. Does the mark stand where it stood?", search.trials + 1)
+                BoardMessage::TrialOver { trial: search.trials + 1, config }.to_string()
             }
             (Stage::Start | Stage::Top, Phase::Idle | Phase::Working { .. }) => {
-                format!("Trial {} with {config} …", search.trials + 1)
+                BoardMessage::Trial { trial: search.trials + 1, config }.to_string()
             }
         };
         ui.label(text);

@@ -6,6 +6,7 @@ use egui::{Button, ComboBox, Grid, RichText, Role, Ui, WidgetInfo};
 use super::sheet_parts::{Act, Offer, indicator_ui, text_ui, title_ui};
 use crate::model::general::{Comparison, Side, Take};
 use crate::model::{GeneralView, IndicatorState, UnitSettings};
+use crate::screens::messages::{SettingMessage, SettingsFileMessage};
 
 /// Room for the longest name of a backup.
 const SIDE_WIDTH: f32 = 300.0;
@@ -27,7 +28,11 @@ pub fn compare_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
         for sentence in &opened.corrected {
             indicator_ui(ui, IndicatorState::Warning, sentence);
         }
-        text_ui(ui, &format!("Profile {}, read {}.", opened.name, opened.profile.date_text()));
+        text_ui(
+            ui,
+            &SettingsFileMessage::ProfileRead { name: opened.name.clone(), date: opened.profile.date_text() }
+                .to_string(),
+        );
     }
     if comparison.missing.is_empty() {
         count_ui(ui, &comparison);
@@ -73,7 +78,7 @@ fn count_ui(ui: &mut Ui, comparison: &Comparison) {
     match comparison.count() {
         0 => indicator_ui(ui, IndicatorState::Ok, "Both sides have the same values."),
         1 => text_ui(ui, "1 setting differs."),
-        count => text_ui(ui, &format!("{count} settings differ.")),
+        count => text_ui(ui, &SettingMessage::Differ { count }.to_string()),
     }
 }
 
@@ -84,7 +89,7 @@ fn groups_ui(ui: &mut Ui, unit: &UnitSettings, comparison: &Comparison) -> Optio
         ui.horizontal(|ui| {
             ui.strong(group.label());
             let response = ui.add(Button::new("Take over group").small());
-            let name = format!("Take over group {}", group.label());
+            let name = SettingMessage::TakeOverGroup { group: group.label() }.to_string();
             response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
             if response.clicked() {
                 taken = Some(Take::Group(*group));
@@ -124,7 +129,7 @@ fn row_ui(ui: &mut Ui, unit: &UnitSettings, difference: &Difference) -> bool {
         false
     } else {
         let response = ui.add(Button::new("Take over").small());
-        let name = format!("Take over {}", row.title());
+        let name = SettingMessage::TakeOver { title: row.title() }.to_string();
         response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
         response.clicked()
     };

@@ -79,7 +79,7 @@ fn list_ui(
 fn number_ui(ui: &mut Ui, unit: &mut UnitSettings, row: &Row) -> Response {
     let palette = Palette::of(ui);
     let mut text = unit.text(row);
-    let id = Id::unique(format!("number of {}", row.key));
+    let id = Id::unique(("number", &row.key));
     let response = ui
         .scope(|ui| {
             if unit.trouble(&row.key).is_some() {

@@ -5,8 +5,10 @@ use egui::{Button, Label, ProgressBar, RichText, Role, Ui, WidgetInfo, vec2};
 use crate::command::{Command, Commands};
 use crate::family::{Ability, Family, SettingsWords};
 use crate::focus;
+use crate::messages::SpokenMessage;
 use crate::model::settings::{Running, Saved};
 use crate::model::{GeneralView, IndicatorState, SettingsAction, Sheet, UnitSettings};
+use crate::screens::messages::SettingMessage;
 use crate::widgets::text_field::text_field_ui;
 
 const SEARCH_WIDTH: f32 = 190.0;
@@ -35,16 +37,18 @@ fn edits_mark(unit: &UnitSettings) -> (IndicatorState, String) {
     match unit.changes().len() {
         _ if !unit.is_read() => (IndicatorState::Unknown, "not read yet".to_owned()),
         0 => (IndicatorState::Ok, "none".to_owned()),
-        count => (IndicatorState::Warning, format!("{count} not written")),
+        count => (IndicatorState::Warning, SettingMessage::NotWritten { count }.to_string()),
     }
 }
 
 fn saved_mark(unit: &UnitSettings) -> (IndicatorState, String) {
     match unit.saved() {
         Saved::Yes => (IndicatorState::Ok, "saved".to_owned()),
-        Saved::Differs(count) => (IndicatorState::Warning, format!("{count} not saved")),
+        Saved::Differs(count) => (IndicatorState::Warning, SettingMessage::NotSaved { count }.to_string()),
         Saved::NotKnown { written: 0 } => (IndicatorState::Unknown, "not known".to_owned()),
-        Saved::NotKnown { written } => (IndicatorState::Warning, format!("{written} written, not saved")),
+        Saved::NotKnown { written } => {
+            (IndicatorState::Warning, SettingMessage::WrittenNotSaved { written }.to_string())
+        }
     }
 }
 
@@ -68,7 +72,7 @@ fn buttons_ui(ui: &mut Ui, general: &mut GeneralView<'_>, family: &dyn Family) {
     let Some(unit) = general.unit() else { return };
     let idle = !general.is_busy();
     let edits = unit.edits().len();
-    let write = if edits == 0 { "Write…".to_owned() } else { format!("Write {edits}…") };
+    let write = if edits == 0 { "Write…".to_owned() } else { SettingMessage::Write { edits }.to_string() };
     let buttons = [
         ("Read…", "Read settings", idle, "Reads the controller's settings again", Sheet::Read),
         (
@@ -157,9 +161,9 @@ fn filter_ui(ui: &mut Ui, general: &mut GeneralView<'_>, words: &SettingsWords, 
             let can =
                 general.unit().is_some_and(|unit| if again { unit.can_redo() } else { unit.can_undo() });
             let response = ui.add_enabled(can, Button::new(text));
-            let spoken = format!("{text} edit of settings");
+            let spoken = SettingMessage::StepEdit { word: text }.to_string();
             response.widget_info(|| WidgetInfo::labeled(Role::Button, can, &spoken));
-            if response.on_hover_text(format!("{text} the last edit of the settings")).clicked() {
+            if response.on_hover_text(SettingMessage::StepLastEdit { word: text }.to_string()).clicked() {
                 commands.push(Command::StepSettings { again });
             }
         }
@@ -170,11 +174,11 @@ fn filter_ui(ui: &mut Ui, general: &mut GeneralView<'_>, words: &SettingsWords, 
     });
 }
 
-fn idle_ui(ui: &mut Ui, general: &GeneralView<'_>, many: &str) {
+fn idle_ui(ui: &mut Ui, general: &GeneralView<'_>, many: &'static str) {
     let Some(unit) = general.unit() else { return };
     let all = unit.table().rows().len();
     let text = if general.is_filtered() {
-        format!("{} of {all} {many}", general.shown().len())
+        SettingMessage::ShownOf { shown: general.shown().len(), all, many }.to_string()
     } else {
         format!("{all} {many}")
     };
@@ -189,6 +193,6 @@ fn running_ui(ui: &mut Ui, running: &Running, commands: &mut Commands) {
     let text = if running.text.is_empty() { running.name().to_string() } else { running.text.clone() };
     let bar = ProgressBar::new(running.fraction.unwrap_or(0.0)).desired_width(ui.available_width());
     let response = ui.add(bar.text(text.as_str()));
-    let spoken = format!("Progress: {}, {text}", running.name());
+    let spoken = SpokenMessage::Progress { what: running.name().to_string(), text: text.clone() }.to_string();
     response.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, &spoken));
 }

@@ -3,7 +3,9 @@
 use brushwork_link::settings::{Bound, Row};
 use egui::{Frame, Label, Margin, RichText, ScrollArea, Stroke, Ui};
 
+use crate::messages::ButtonMessage;
 use crate::model::{GeneralView, UnitSettings};
+use crate::screens::messages::SettingMessage;
 use crate::theme::Palette;
 use crate::widgets::NO_VALUE;
 
@@ -56,7 +58,11 @@ pub fn copies_ui(ui: &mut Ui, unit: &UnitSettings, row: &Row) {
         [&row.title(), &wanted, &text(unit.on_controller(&row.key)), &row.format(row.default), &row.key];
     let line = cells.map(String::as_str).join("\t");
     for (title, copied) in [("Copy value", wanted), ("Copy row", line)] {
-        if ui.small_button(title).on_hover_text(format!("Copies {}", copied.replace('\t', ", "))).clicked() {
+        if ui
+            .small_button(title)
+            .on_hover_text(ButtonMessage::Copies { text: copied.replace('\t', ", ") }.to_string())
+            .clicked()
+        {
             ui.ctx().copy_text(copied);
             ui.close();
         }
@@ -67,13 +73,13 @@ pub fn copies_ui(ui: &mut Ui, unit: &UnitSettings, row: &Row) {
 fn figures(unit: &UnitSettings, row: &Row) -> String {
     let mut text = String::new();
     if row.range.bound != Bound::Unbounded {
-        text += &format!("Range {}. ", row.range_text());
+        text += &SettingMessage::Range { range: row.range_text() }.to_string();
     }
     let assumed = if row.default_assumed { " (assumed)" } else { "" };
-    text += &format!("Default {}{assumed}.", row.format(row.default));
+    text += &SettingMessage::Default { value: row.format(row.default), assumed }.to_string();
     let note = unit.wanted(&row.key).and_then(|value| unit.table().note(row, value));
     if let Some(note) = note {
-        text += &format!(" The number is {note}.");
+        text += &SettingMessage::Number { note }.to_string();
     }
-    text + &format!(" Name in files and on the command line: {}.", row.key)
+    text + &SettingMessage::Key { key: row.key.clone() }.to_string()
 }

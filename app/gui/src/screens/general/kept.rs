@@ -6,6 +6,7 @@ use egui::{Button, Grid, Role, TextEdit, Ui, WidgetInfo};
 
 use super::sheet_parts::{Act, Offer, differences_ui, indicator_ui, text_ui, title_ui};
 use crate::model::{GeneralView, IndicatorState, Settle, Sheet, Side, UnitSettings};
+use crate::screens::messages::SettingMessage;
 use crate::widgets::text_field::keep_space;
 
 /// Size of the field for notes.
@@ -21,7 +22,7 @@ pub fn backups_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
         "Before every write, save, restore of defaults and firmware change the settings are kept here, newest first. \
          Restoring one makes its values changes, to be looked at and written.",
     );
-    ui.weak(format!("Kept in {folder}"));
+    ui.weak(SettingMessage::KeptIn { folder: folder.to_string() }.to_string());
     notes_ui(ui, general);
     if general.settings.backups().is_empty() {
         indicator_ui(
@@ -37,7 +38,9 @@ pub fn backups_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
             ui.label(backup.title());
             for (text, restores) in [("Compare", false), ("Restore…", true)] {
                 let response = ui.add(Button::new(text).small());
-                let name = format!("{} backup {}", text.trim_end_matches('…'), backup.title());
+                let name =
+                    SettingMessage::ActOfBackup { act: text.trim_end_matches('…'), backup: backup.title() }
+                        .to_string();
                 response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
                 if response.clicked() {
                     wanted = Some((backup.name.clone(), restores));
@@ -160,7 +163,7 @@ fn held_ui(ui: &mut Ui, unit: &UnitSettings, held: &Held) {
     ui.label(row.title());
     let now = ui.strong(text(held.now));
     now.widget_info(|| WidgetInfo::labeled(Role::Label, true, held.sentence(row)));
-    ui.weak(format!("old {}", text(held.old)));
-    ui.weak(format!("new {}", text(held.new.or(held.old))));
+    ui.weak(SettingMessage::Old { value: text(held.old) }.to_string());
+    ui.weak(SettingMessage::New { value: text(held.new.or(held.old)) }.to_string());
     ui.end_row();
 }

@@ -6,6 +6,7 @@ use egui::{Align, Button, ComboBox, Layout, Response, RichText, Role, ScrollArea
 use super::OwnSection;
 use crate::model::general::{GeneralView, Section, sections};
 use crate::model::settings::UnitSettings;
+use crate::screens::messages::SettingMessage;
 use crate::widgets::heading_ui;
 
 /// Room that the scroll bar may take.
@@ -92,7 +93,7 @@ fn section_ui(ui: &mut Ui, name: &str, function: Option<&str>, mark: String, is_
         ui.add(button.right_text(RichText::new(mark).small()))
     });
     let response = response.inner;
-    let spoken = format!("Section {name}");
+    let spoken = SettingMessage::Section { name: name.to_string() }.to_string();
     response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_current, &spoken));
     let Some(function) = function else { return response.on_hover_text(name) };
     let described = format!("{name}: {function}");
@@ -113,7 +114,7 @@ fn mark_of(unit: &UnitSettings, section: Section, function: Option<&str>) -> Str
     match (edits_in(unit, section), function) {
         (0, function) => function.unwrap_or_default().to_owned(),
         (_, Some(function)) => format!("{function} *"),
-        (edits, None) => format!("{edits} changed"),
+        (edits, None) => SettingMessage::Changed { edits }.to_string(),
     }
 }
 

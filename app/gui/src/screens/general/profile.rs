@@ -6,6 +6,7 @@ use super::sheet_parts::{Act, Offer, indicator_ui, text_ui, title_ui};
 use crate::frame::FRAME_INTERVAL;
 use crate::model::general::{Purpose, Reported};
 use crate::model::{GeneralView, IndicatorState, UnitSettings};
+use crate::screens::messages::{SettingMessage, SettingsFileMessage};
 use crate::widgets::text_field::text_field_ui;
 
 pub fn open_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
@@ -30,7 +31,7 @@ pub fn save_ui(ui: &mut Ui, general: &mut GeneralView<'_>) -> Vec<Offer> {
     path_ui(ui, general, Purpose::Save);
     let edits = general.unit().map_or(0, |unit| unit.edits().len());
     if edits > 0 {
-        let text = format!("Include what is changed here and not written ({edits})");
+        let text = SettingMessage::WithEdits { edits }.to_string();
         ui.checkbox(&mut general.profiles.with_edits, text);
     } else {
         general.profiles.with_edits = false;
@@ -91,7 +92,7 @@ fn told_ui(ui: &mut Ui, reported: &Reported) -> bool {
 /// What has to be changed of a profile before it fits; nothing is used before that is agreed to.
 pub fn upgrade_ui(ui: &mut Ui, general: &GeneralView<'_>) -> Vec<Offer> {
     let Some((name, changes)) = general.profiles.pending() else { return Vec::new() };
-    title_ui(ui, &format!("Upgrade profile {name}"));
+    title_ui(ui, &SettingsFileMessage::Upgrade { name: name.to_string() }.to_string());
     text_ui(
         ui,
         "The profile was made for another controller, another firmware generation or by an older program. To fit the \

@@ -9,7 +9,9 @@ use super::rows::{self, Columns};
 use super::sheet_parts::{indicator_ui, text_ui};
 use super::wiring::{self, wiring_ui};
 use crate::family::recipe::{Answers, Ask, Goal, Live, Recipe, Recipes};
+use crate::messages::NameMessage;
 use crate::model::{Connection, GeneralView, IndicatorState, UnitSettings};
+use crate::screens::messages::SettingMessage;
 use crate::widgets::NO_VALUE;
 
 /// Room that the scroll bar may take.
@@ -145,7 +147,10 @@ fn one_ask_ui(ui: &mut Ui, ask: Ask, answers: &mut Answers, table: &SettingsTabl
         Ask::Motor => {
             word(ui, "Motor");
             for motor in 1..=recipes.motors(table) {
-                if ui.radio(answers.motor() == motor, format!("Motor {motor}")).clicked() {
+                if ui
+                    .radio(answers.motor() == motor, NameMessage::Motor { number: motor }.to_string())
+                    .clicked()
+                {
                     answers.motor = motor;
                 }
             }
@@ -197,13 +202,21 @@ fn live_ui(ui: &mut Ui, front: &Connection, recipes: &dyn Recipes, live: Live) {
                 format!("{}: {value} {}", channel.label, channel.unit)
             };
             let all: Vec<String> = channels.iter().map(of).collect();
-            indicator_ui(ui, IndicatorState::Active, &format!("Now {}", all.join(", ").trim_end()));
+            indicator_ui(
+                ui,
+                IndicatorState::Active,
+                &SettingMessage::Readings { readings: all.join(", ").trim_end().to_string() }.to_string(),
+            );
         }
         Live::Indicators(names) => {
             for info in front.family().indicators().iter().filter(|info| names.contains(&info.short)) {
                 let state = front.link.indicators.named(info.short);
                 let word = if state == IndicatorState::Ok { "not active" } else { state.word() };
-                indicator_ui(ui, state, &format!("{} now: {word}", info.title));
+                indicator_ui(
+                    ui,
+                    state,
+                    &SettingMessage::IndicatorNow { title: info.title, state: word }.to_string(),
+                );
             }
         }
     }

@@ -4,8 +4,10 @@ use brushwork_link::settings::Row;
 use egui::{Align, Button, Label, Layout, Rect, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 
 use super::{editor, help};
+use crate::messages::ButtonMessage;
 use crate::model::{GeneralView, IndicatorState, Section, UnitSettings};
 use crate::screens::face::Face;
+use crate::screens::messages::SettingMessage;
 use crate::theme::Palette;
 use crate::widgets::{NO_VALUE, heading_ui};
 
@@ -177,12 +179,14 @@ fn row_ui(
             if columns.controller {
                 let text = unit.on_controller(&row.key).map(|value| row.format(value));
                 let text = text.unwrap_or_else(|| NO_VALUE.to_owned());
-                let spoken = format!("{} on the controller: {text}", row.title());
+                let spoken =
+                    SettingMessage::OnController { title: row.title(), value: text.clone() }.to_string();
                 text_ui(ui, &text, &spoken, VALUE_WIDTH, true);
             }
             if columns.default {
                 let text = row.format(row.default);
-                let spoken = format!("{} default: {text}", row.title());
+                let spoken =
+                    SettingMessage::DefaultIs { title: row.title(), value: text.clone() }.to_string();
                 text_ui(ui, &text, &spoken, VALUE_WIDTH, true);
             }
             match locked {
@@ -199,7 +203,9 @@ fn mark_ui(ui: &mut Ui, unit: &UnitSettings, row: &Row) {
     let (rect, response) = ui.allocate_exact_size(vec2(MARK_WIDTH, HEIGHT), Sense::hover());
     let (state, spoken) = match unit.trouble(&row.key) {
         Some(trouble) => (IndicatorState::Error, format!("{}: {trouble}", row.title())),
-        None if unit.is_edited(&row.key) => (IndicatorState::Warning, format!("{} is changed", row.title())),
+        None if unit.is_edited(&row.key) => {
+            (IndicatorState::Warning, SettingMessage::IsChanged { title: row.title() }.to_string())
+        }
         None => return,
     };
     state.paint(ui, rect.center(), 5.0);
@@ -224,7 +230,7 @@ fn locked_ui(ui: &mut Ui, row: &Row, reason: &str) {
     let (rect, response) = ui.allocate_exact_size(vec2(REVERT_WIDTH, HEIGHT), Sense::hover());
     let font = egui::TextStyle::Small.resolve(ui.style());
     ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, "locked", font, Palette::of(ui).weak_text);
-    let spoken = format!("{} is locked: {reason}", row.title());
+    let spoken = SettingMessage::IsLocked { title: row.title(), reason: reason.to_string() }.to_string();
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
     response.on_hover_text(reason);
 }
@@ -234,7 +240,7 @@ fn revert_ui(ui: &mut Ui, unit: &mut UnitSettings, row: &Row) {
         ui.allocate_space(vec2(REVERT_WIDTH, HEIGHT));
         return;
     }
-    let name = format!("Revert {}", row.title());
+    let name = ButtonMessage::Revert { title: row.title() }.to_string();
     let response = ui.add_sized(vec2(REVERT_WIDTH, HEIGHT - 6.0), Button::new("Revert").small());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
     if response.on_hover_text("Back to what the controller has").clicked() {

@@ -11,6 +11,7 @@ use super::{compare, kept, profile};
 use crate::command::{Command, Commands};
 use crate::family::SettingsWords;
 use crate::model::{GeneralView, IndicatorState, Saved, SettingsAction, Sheet, Take, UnitSettings};
+use crate::screens::messages::SettingMessage;
 use brushwork_core::keep::WearLevel;
 
 /// Room for the buttons below the text.
@@ -142,7 +143,11 @@ fn write_ui(ui: &mut Ui, unit: &UnitSettings, (stream, will): Writing<'_>) -> Ve
         indicator_ui(ui, *state, what);
     }
     for refusal in unit.refused() {
-        indicator_ui(ui, IndicatorState::Warning, &format!("{refusal} It is not written."));
+        indicator_ui(
+            ui,
+            IndicatorState::Warning,
+            &SettingMessage::Refused { refusal: refusal.to_string() }.to_string(),
+        );
     }
     let can_be_written = match unit.plan(stream) {
         Ok(plan) => {
@@ -177,11 +182,10 @@ fn bytes_ui(ui: &mut Ui, unit: &UnitSettings, plan: &Plan) {
             ui.label(format!("{}: {}", step.title(), step.words(address, generation)));
             ui.label(RichText::new(bytes).monospace().weak());
         }
-        if !plan.hidden.is_empty() {
-            ui.label(format!(
-                "{} without a wire form go past the wire of the simulated controller.",
-                plan.hidden.len()
-            ));
+        match plan.hidden.len() {
+            0 => {}
+            1 => drop(ui.label(SettingMessage::OneHidden.to_string())),
+            count => drop(ui.label(SettingMessage::Hidden { count }.to_string())),
         }
     });
 }
@@ -200,13 +204,7 @@ fn save_ui(ui: &mut Ui, general: &GeneralView<'_>, words: &SettingsWords) -> Vec
             differences_ui(ui, unit, unit.unsaved().into_iter());
         }
         (Saved::NotKnown { .. }, Some((known, ram))) => {
-            text_ui(
-                ui,
-                &format!(
-                    "These are saved (in EEPROM, as known since {} -> works with now):",
-                    known.date_text()
-                ),
-            );
+            text_ui(ui, &SettingMessage::SavedSince { date: known.date_text() }.to_string());
             let both = |each: &Difference| each.left.is_some() && each.right.is_some();
             differences_ui(ui, unit, diff(unit.table(), &known.settings, ram).into_iter().filter(both));
         }

@@ -5,6 +5,7 @@ use egui::{
 };
 
 use crate::family::recipe::{Part, Wiring};
+use crate::messages::{NameMessage, SpokenMessage};
 use crate::theme::Palette;
 
 /// Size of the drawing, points.
@@ -17,9 +18,12 @@ const FONT: f32 = 11.5;
 /// Draws it; `name` gives the names of the controller's terminals.
 pub fn wiring_ui(ui: &mut Ui, wiring: &Wiring, name: &dyn Fn(&str) -> String) {
     let (place, response) = ui.allocate_exact_size(SIZE, Sense::hover());
-    let wires: Vec<String> =
-        wiring.wires.iter().map(|(from, to)| format!("{from} to {}", name(to))).collect();
-    let spoken = format!("Wiring: {}, {}", wiring.part.name(), wires.join(", "));
+    let wires: Vec<String> = wiring
+        .wires
+        .iter()
+        .map(|(from, to)| NameMessage::To { from: (*from).to_owned(), to: name(to) }.to_string())
+        .collect();
+    let spoken = SpokenMessage::Wiring { part: wiring.part.name(), wires: wires.join(", ") }.to_string();
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &spoken));
     let palette = Palette::of(ui);
     let drawing =

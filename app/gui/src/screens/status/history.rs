@@ -3,6 +3,7 @@
 use egui::{Align, Label, Layout, RichText, Role, ScrollArea, Ui, WidgetInfo, vec2};
 
 use crate::model::history::{Entry, History, clock_text};
+use crate::screens::messages::StatusMessage;
 use crate::theme::{self};
 use crate::widgets::heading::heading_ui;
 
@@ -18,7 +19,7 @@ pub fn history_ui(ui: &mut Ui, history: &mut History, height: f32) {
     ui.horizontal(|ui| {
         heading_ui(ui, "Event history");
         let connected = match history.connected_for() {
-            Some(time) => format!("connected for {}", clock_text(time)),
+            Some(time) => StatusMessage::ConnectedFor { time: clock_text(time) }.to_string(),
             None => "the link has ended".to_owned(),
         };
         ui.weak(connected);
@@ -61,7 +62,10 @@ fn counts_ui(ui: &mut Ui, history: &History) {
             ui.add_space(6.0);
         }
         if history.dropped > 0 {
-            ui.label(format!("{} older events are no longer listed", history.dropped));
+            ui.label(match history.dropped {
+                1 => StatusMessage::OneNoLongerListed.to_string(),
+                count => StatusMessage::NoLongerListed { count }.to_string(),
+            });
         }
     });
 }

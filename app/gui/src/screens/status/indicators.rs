@@ -3,6 +3,7 @@
 use egui::{RichText, Ui};
 
 use crate::model::{Connection, IndicatorState, clock_text};
+use crate::screens::messages::StatusMessage;
 use crate::widgets::{heading_ui, indicator};
 
 pub fn indicators_ui(ui: &mut Ui, connection: &Connection, columns: usize) {
@@ -18,7 +19,8 @@ pub fn indicators_ui(ui: &mut Ui, connection: &Connection, columns: usize) {
             let since =
                 connection.indicator_since(info.short).filter(|_| state >= IndicatorState::Ok).map(|since| {
                     let clock = clock_text(since);
-                    format!("since {}", clock.split('.').next().unwrap_or_default())
+                    StatusMessage::Since { time: clock.split('.').next().unwrap_or_default().to_string() }
+                        .to_string()
                 });
             indicator::full_ui(column, info.short, info.title, state, since.as_deref());
         }

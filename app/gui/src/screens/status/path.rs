@@ -6,8 +6,10 @@ use egui::{Button, Frame, Label, Margin, RichText, Role, Stroke, Ui, WidgetInfo,
 use crate::command::{Command, Commands};
 use crate::family::path::{PathStep, Place};
 use crate::focus::{Region, region_ui};
+use crate::messages::ButtonMessage;
 use crate::model::path::{Judged, Standing};
 use crate::model::{Connection, Model, Screen, Section, Sheet};
+use crate::screens::messages::StatusMessage;
 use crate::theme::Palette;
 
 const MARK: f32 = 14.0;
@@ -58,9 +60,7 @@ fn progress_text(steps: &[Judged]) -> String {
     if steps.iter().any(|judged| judged.standing == Standing::NotKnown) {
         return "The settings are being read …".to_owned();
     }
-    format!(
-        "{done} of {needed} steps done, as the controller's own values and what was seen of its motors tell"
-    )
+    StatusMessage::StepsDone { done, needed }.to_string()
 }
 
 /// A step by its mark and its title; true where it was pressed.
@@ -69,8 +69,14 @@ fn chip_ui(ui: &mut Ui, judged: &Judged, is_shown: bool) -> bool {
     // The mark is drawn into the room before the words.
     let response = ui.add(Button::selectable(is_shown, format!("     {title}")));
     judged.standing.mark().paint(ui, response.rect.left_center() + vec2(13.0, 0.0), MARK * 0.36);
-    response
-        .widget_info(|| WidgetInfo::selected(Role::Button, true, is_shown, format!("Step {title}: {word}")));
+    response.widget_info(|| {
+        WidgetInfo::selected(
+            Role::Button,
+            true,
+            is_shown,
+            StatusMessage::Step { title, standing: word }.to_string(),
+        )
+    });
     response.on_hover_text(format!("{title}: {word}. {}", judged.note)).clicked()
 }
 
@@ -113,12 +119,17 @@ fn shown_ui(ui: &mut Ui, front: &mut Connection, judged: &Judged, commands: &mut
 fn place_text(front: &Connection, step: PathStep) -> String {
     let family = front.family();
     match step.place {
-        Place::Settings(groups) => {
-            format!("Go to {}", front.first_row_of(groups).map_or("Settings", |row| row.group.label()))
+        Place::Settings(groups) => ButtonMessage::GoTo {
+            place: front.first_row_of(groups).map_or("Settings", |row| row.group.label()).to_string(),
         }
-        Place::Screen(screen) => format!("Go to {}", family.title(screen)),
-        Place::Drawer(screen, tab) => format!("Go to {}: {}", family.title(screen), tab.title(screen)),
-        Place::Recipe(job) => format!("Go to Recipes: {}", job.title()),
+        .to_string(),
+        Place::Screen(screen) => ButtonMessage::GoTo { place: family.title(screen).to_string() }.to_string(),
+        Place::Drawer(screen, tab) => StatusMessage::GoToTab {
+            screen: family.title(screen).to_string(),
+            tab: tab.title(screen).to_string(),
+        }
+        .to_string(),
+        Place::Recipe(job) => StatusMessage::GoToRecipe { job: job.title() }.to_string(),
         Place::Save => "Save…".to_owned(),
         Place::BackUp => "Back up now".to_owned(),
     }

@@ -4,8 +4,10 @@ use egui::{Button, Grid, Label, Ui};
 
 use crate::command::{Command, Commands};
 use crate::family::Ability;
+use crate::messages::LinkMessage;
 use crate::model::Arming;
 use crate::model::connection::Connection;
+use crate::screens::messages::StatusMessage;
 use crate::widgets::heading::heading_ui;
 
 pub fn unit_ui(ui: &mut Ui, connection: &Connection, commands: &mut Commands) {
@@ -13,7 +15,11 @@ pub fn unit_ui(ui: &mut Ui, connection: &Connection, commands: &mut Commands) {
     heading_ui(ui, "Unit and link");
     let addresses = |addresses: &[u8]| {
         let each: Vec<_> = addresses.iter().map(|address| format!("0x{address:02X}")).collect();
-        if each.is_empty() { String::new() } else { format!(", also answers {}", each.join(" ")) }
+        if each.is_empty() {
+            String::new()
+        } else {
+            StatusMessage::AlsoAnswers { addresses: each.join(" ") }.to_string()
+        }
     };
     let stream = connection.link.stream.map_or("not known".to_owned(), |stream| stream.to_string());
     let port = match connection.family().lacks(Ability::Streams) {
@@ -32,22 +38,28 @@ pub fn unit_ui(ui: &mut Ui, connection: &Connection, commands: &mut Commands) {
         ),
         (
             "Traffic",
-            format!("{:.1} kbit/s, {:.0} requests/s", figures.kbit_per_s, figures.transactions_per_s),
+            LinkMessage::Traffic {
+                kbit_per_s: figures.kbit_per_s,
+                requests_per_s: figures.transactions_per_s,
+            }
+            .to_string(),
         ),
         (
             "Round trip",
-            format!(
-                "{:.2} ms median, {:.2} ms for 99 %",
-                figures.round_trip_median_s * 1000.0,
-                figures.round_trip_p99_s * 1000.0
-            ),
+            LinkMessage::RoundTrip {
+                median: figures.round_trip_median_s * 1000.0,
+                most: figures.round_trip_p99_s * 1000.0,
+            }
+            .to_string(),
         ),
         (
             "Link errors",
-            format!(
-                "{} time-outs, {} bad CRC, {} retries",
-                figures.timeouts, figures.crc_errors, figures.retries
-            ),
+            LinkMessage::Errors {
+                timeouts: figures.timeouts,
+                bad_crc: figures.crc_errors,
+                retries: figures.retries,
+            }
+            .to_string(),
         ),
     ];
     let own = connection.family().unit_row(identity);
@@ -60,7 +72,7 @@ pub fn unit_ui(ui: &mut Ui, connection: &Connection, commands: &mut Commands) {
     });
     if let Some(lacking) = connection.link.lacking() {
         ui.add_space(4.0);
-        ui.add(Label::new(format!("This firmware does not have: {lacking}.")).wrap());
+        ui.add(Label::new(StatusMessage::Lacking { what: lacking }.to_string()).wrap());
     }
     // Also where it is held for complete, which may be as wrong.
     let is_armed = matches!(connection.link.arming, Arming::Armed { .. });

@@ -10,7 +10,9 @@ use brushwork_values::Motor;
 use super::{SuprMotrConnection, to_send};
 use crate::family::path::{BACK_UP, PathStep, Place, SAVE, ShownBy, Step};
 use crate::family::{Ability, ActiveIndicator, Family, Figure, Figures, Known, Own, SettingsWords, Sliders};
+use crate::messages::NameMessage;
 use crate::model::{IndicatorInfo, IndicatorState, Screen, Simulated, state_of};
+use crate::suprmotr::messages::LineMessage;
 
 #[derive(Debug)]
 pub struct SuprMotr;
@@ -99,7 +101,7 @@ impl Family for SuprMotr {
         let facts = SuprMotrFacts::of(identity)?;
         let numbers = if facts.radix() == Radix::Decimal { "decimal" } else { "hexadecimal" };
         let echo = if facts.has_echo() { "echo on" } else { "echo off" };
-        Some(("Line", format!("{echo}, numbers {numbers}")))
+        Some(("Line", LineMessage::Set { echo, numbers }.to_string()))
     }
 
     fn saves(&self, command: u8, _identity: &Identity) -> Option<bool> {
@@ -122,7 +124,7 @@ impl Family for SuprMotr {
     }
 
     fn address_label(&self, address: u8) -> String {
-        format!("unit {}", self.family().address_text(address))
+        NameMessage::Unit { address: self.family().address_text(address).to_string() }.to_string()
     }
 
     fn scan_cost(&self) -> &'static str {

@@ -6,7 +6,7 @@ use brushwork_link::messages::ProfileMessage;
 use brushwork_link::settings::{CopiedMotor, SettingsImage, copy_motor, diff};
 
 use super::{Comparison, Fitted, Side, Take};
-use crate::messages::CompareMessage;
+use crate::messages::{CompareMessage, NameMessage};
 use crate::model::general::GeneralView;
 use brushwork_core::keep::Backup;
 use brushwork_core::settings::{eeprom_title, fitted, known_defaults};
@@ -20,13 +20,13 @@ impl GeneralView<'_> {
                 self.settings.known_eeprom().map_or("EEPROM (not known)".to_owned(), eeprom_title)
             }
             Side::Profile => match &self.profiles.opened {
-                Some(opened) => format!("Profile {}", opened.name),
+                Some(opened) => NameMessage::Profile { name: opened.name.clone() }.to_string(),
                 None => "Profile (none is open)".to_owned(),
             },
             Side::Default => "Defaults".to_owned(),
             Side::Backup(name) => {
                 let backup = self.settings.backups().iter().find(|backup| backup.name == *name);
-                format!("Backup {}", backup.map_or_else(|| name.clone(), Backup::title))
+                NameMessage::Backup { title: backup.map_or_else(|| name.clone(), Backup::title) }.to_string()
             }
         }
     }

@@ -5,6 +5,7 @@ use std::path::Path;
 use brushwork_link::settings::{OpenedProfile, Profile, Strictness};
 
 use super::{Opened, Purpose, Reported};
+use crate::messages::OutcomeMessage;
 use crate::model::general::GeneralView;
 use crate::model::general::compare::Side;
 use crate::model::general::sheet::Sheet;
@@ -51,7 +52,8 @@ impl GeneralView<'_> {
         match saved {
             Ok(()) => {
                 let settings = counted(profile.settings.len());
-                self.profiles.reported = Reported::Done(format!("{settings} are in {path}."));
+                self.profiles.reported =
+                    Reported::Done(OutcomeMessage::ProfileSaved { settings, path }.to_string());
             }
             Err(error) => {
                 self.profiles.is_in_the_way = !is_agreed && Path::new(&path).is_file();
