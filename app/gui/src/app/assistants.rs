@@ -260,34 +260,49 @@ impl App {
     }
 
     fn go_on_raw(&mut self) {
-        let store = self.parts.keeping.store().clone();
         for id in self.links.ids() {
-            let ports = self.model.devices.ports.clone();
             let Some(connection) = self.model.connection_mut(id) else { continue };
-            let unit = connection.link.identity().map(|identity| UnitId::new(identity, &ports));
             if let Some(came) = connection.raw.job().and_then(|job| connection.errand.came(job)) {
                 let found = connection.raw.came(came, connection.settings.unit());
-                if let (Some((key, raw)), Some(unit)) = (found, &unit) {
-                    let ended = store.end_raw_writes(unit, |write| (write.key == key).then_some(raw));
-                    if let Err(fault) = ended {
-                        self.model.messages.fail(Message::error(fault));
-                    }
-                }
-                let Some(connection) = self.model.connection_mut(id) else { continue };
-                if let Some(unit) = &unit {
-                    connection.raw.look_again(&store, unit);
-                }
+                self.end_raw(id, found);
                 continue;
             }
-            if let Some(unit) = unit.filter(|_| connection.raw.open && !connection.raw.is_running()) {
-                connection.raw.look_at(&store, &unit);
+            let identity = connection.link.identity();
+            if connection.raw.open && identity.is_some_and(|identity| connection.raw.is_of_another(identity))
+            {
+                self.look_at_raw_writes(id);
             }
+            let Some(connection) = self.model.connection_mut(id) else { continue };
             if connection.errand.is_running() || connection.raw.is_running() {
                 continue;
             }
             for sentence in connection.settings.take_cut_off() {
                 self.say(id, Gravity::Warning, sentence);
             }
+        }
+    }
+
+    /// A raw write has ended, with what was read back.
+    fn end_raw(&mut self, id: ConnectionId, found: Option<(String, i64)>) {
+        let store = self.parts.keeping.store();
+        let identity = self.model.connection(id).and_then(|connection| connection.link.identity());
+        let unit = identity.map(|identity| UnitId::new(identity, &self.model.devices.ports));
+        if let (Some((key, raw)), Some(unit)) = (found, &unit)
+            && let Err(fault) = store.end_raw_writes(unit, |write| (write.key == key).then_some(raw))
+        {
+            self.model.messages.fail(Message::error(fault));
+        }
+        self.look_at_raw_writes(id);
+    }
+
+    /// Looks up what was written raw to the unit that is shown.
+    fn look_at_raw_writes(&mut self, id: ConnectionId) {
+        let store = self.parts.keeping.store().clone();
+        let identity = self.model.connection(id).and_then(|connection| connection.link.identity()).cloned();
+        let Some(identity) = identity else { return };
+        let unit = UnitId::new(&identity, &self.model.devices.ports);
+        if let Some(connection) = self.model.connection_mut(id) {
+            connection.raw.look_at(&store, identity, &unit);
         }
     }
 

@@ -3,9 +3,9 @@
 use brushwork_core::examine::RawWrite;
 use brushwork_core::keep::{KeepError, Store, UnitId};
 use brushwork_core::settings::Done;
-use brushwork_link::Message;
 use brushwork_link::device::JobId;
 use brushwork_link::settings::Row;
+use brushwork_link::{Identity, Message};
 use brushwork_values::Sentences;
 
 use super::errand::Came;
@@ -33,7 +33,7 @@ pub struct RawPage {
     pub is_agreed: bool,
     /// What was written raw before, oldest first, of the unit at this address.
     writes: Vec<RawWrite>,
-    writes_of: Option<UnitId>,
+    writes_of: Option<Identity>,
     job: Option<JobId>,
     pub ended: Option<(Gravity, Message)>,
 }
@@ -71,17 +71,17 @@ impl RawPage {
         self.is_agreed &= job.is_none();
     }
 
-    /// Looks up what was written raw to the unit, if that is another one than before.
-    pub fn look_at(&mut self, store: &Store, unit: &UnitId) {
-        if self.writes_of.as_ref() != Some(unit) {
-            self.writes_of = Some(unit.clone());
-            (self.ended, self.is_agreed) = (None, false);
-            self.look_again(store, unit);
-        }
+    /// Whether what is shown was written to another unit.
+    pub fn is_of_another(&self, identity: &Identity) -> bool {
+        self.writes_of.as_ref() != Some(identity)
     }
 
-    /// Looks up what was written raw.
-    pub fn look_again(&mut self, store: &Store, unit: &UnitId) {
+    /// Looks up what was written raw to a unit.
+    pub fn look_at(&mut self, store: &Store, identity: Identity, unit: &UnitId) {
+        if self.is_of_another(&identity) {
+            (self.ended, self.is_agreed) = (None, false);
+        }
+        self.writes_of = Some(identity);
         match store.raw_writes(unit) {
             Ok(writes) => self.writes = writes,
             Err(KeepError::NoFolder) => self.writes.clear(),

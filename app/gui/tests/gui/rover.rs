@@ -406,7 +406,10 @@ const PIN: &str = "motor1.encoder.pin";
 
 /// An MCP that passes for a real one, with the page open on the pin of its first encoder, whose numbers have no public meaning.
 fn raw_page() -> Bench {
-    let mut bench = Bench::new();
+    raw_page_of(Bench::new())
+}
+
+fn raw_page_of(mut bench: Bench) -> Bench {
     bench.pass_for_real();
     bench.connect();
     bench.pass_ms(8000);
@@ -479,6 +482,35 @@ fn a_raw_write_that_is_cut_off_is_noted_and_named_at_the_next_connection() {
     let noted = bench.store().raw_writes(&unit).unwrap();
     assert!(!noted[0].is_open);
     assert!(noted[0].found == Some(2) || noted[0].found == Some(before), "{noted:?}");
+}
+
+#[test]
+fn a_raw_write_in_which_the_window_dies_is_named_by_the_next_window() {
+    let quirks = Quirks { late: Duration::from_millis(10), ..Quirks::default() };
+    let late = Controller::new(ControllerConfig { quirks, ..ControllerConfig::default() });
+    let mut bench = raw_page_of(Bench::of(late.expect("it is sound")));
+    type_into(&mut bench, "Raw number", "2");
+    bench.harness.get_by_role_and_label(Role::CheckBox, "I answer for what this number does").click();
+    bench.pass_ms(200);
+    let unit = unit_of(&mut bench);
+    let held = |bench: &Bench| bench.line.with(|bus| bus.controllers()[0].settings());
+    let before = held(&bench);
+    bench.button("Write this number").click();
+    for _ in 0..2000 {
+        bench.pass_ms(5);
+        if held(&bench) != before {
+            break;
+        }
+    }
+    assert_ne!(held(&bench), before, "the number has gone out");
+    assert!(bench.store().raw_writes(&unit).unwrap()[0].is_open, "it has not ended yet");
+    let mut bench = bench.after_a_crash();
+    bench.pass_for_real();
+    bench.connect();
+    bench.pass_ms(10_000);
+    let said = bench.said();
+    assert!(said.iter().any(|text| text.contains("The raw number 2 was")), "{said:?}");
+    assert!(!bench.store().raw_writes(&unit).unwrap()[0].is_open);
 }
 
 // ---- keyboard ----
