@@ -17,7 +17,7 @@ mod value;
 pub use code::{Code, by_key, by_raw};
 pub use field::{Field, Kind, SERIAL_BYTES, Unit, width_of};
 pub use hex::{hex, parse_byte};
-pub use message::{Listed, Message, Sentences, Words};
+pub use message::{Listed, Message, Sentences, Words, error_key};
 pub use motor::Motor;
 pub use severity::Severity;
 pub use value::{Record, Value, Values};

@@ -4,6 +4,7 @@
 
 use serde::{Serialize, Serializer};
 use std::any::Any;
+use std::borrow::Cow;
 use std::error::Error;
 use std::fmt;
 use std::sync::Arc;
@@ -11,7 +12,7 @@ use std::sync::Arc;
 /// One message of a theme's table; [`messages!`](crate::messages) makes them.
 pub trait Words: Any + fmt::Debug + fmt::Display + Send + Sync {
     /// Which message it is: no other of the program has the same.
-    fn key(&self) -> &'static str;
+    fn key(&self) -> Cow<'static, str>;
 
     /// What stands in its words, by name, in the order of their definition.
     fn values(&self) -> Vec<(&'static str, &dyn fmt::Display)> {
@@ -31,8 +32,8 @@ impl Message {
 
     /// Which message it is; empty where it says nothing.
     #[must_use]
-    pub fn key(&self) -> &'static str {
-        self.0.as_ref().map_or("", |words| words.key())
+    pub fn key(&self) -> Cow<'static, str> {
+        self.0.as_ref().map_or(Cow::Borrowed(""), |words| words.key())
     }
 
     /// What stands in its words, by name.
@@ -136,8 +137,20 @@ impl<E: fmt::Display> fmt::Display for OfError<E> {
 }
 
 impl<E: Error + Send + Sync + 'static> Words for OfError<E> {
-    fn key(&self) -> &'static str {
-        std::any::type_name::<E>()
+    fn key(&self) -> Cow<'static, str> {
+        error_key(&self.0).into()
+    }
+}
+
+/// An error's key: its type and, of an enum, the member. The member is the first word that a derived `Debug` writes.
+pub fn error_key<E: fmt::Debug>(error: &E) -> String {
+    let kind = std::any::type_name::<E>();
+    let debug = format!("{error:?}");
+    let end = debug.find(|letter: char| !letter.is_alphanumeric()).unwrap_or(debug.len());
+    match &debug[..end] {
+        "" => kind.to_owned(),
+        name if kind.ends_with(name) => kind.to_owned(),
+        member => format!("{kind}.{member}"),
     }
 }
 
@@ -176,9 +189,9 @@ macro_rules! messages {
         }
 
         impl $crate::Words for $name {
-            fn key(&self) -> &'static str {
+            fn key(&self) -> ::std::borrow::Cow<'static, str> {
                 match self {
-                    $(Self::$member { .. } => ::std::concat!(::std::stringify!($name), ".", ::std::stringify!($member)),)*
+                    $(Self::$member { .. } => ::std::concat!(::std::stringify!($name), ".", ::std::stringify!($member)).into(),)*
                 }
             }
 
@@ -214,19 +227,39 @@ mod tests {
     fn a_message_is_its_words_with_its_values_and_is_known_by_its_key() {
         let why = Message::from(TestMessage::Because { why: outside() });
         assert_eq!(why, "It is not written. Maximum is 34.2 V, above 30.0 V.");
-        assert_eq!((why.key(), outside().key()), ("TestMessage.Because", "TestMessage.Outside"));
+        assert_eq!((&*why.key(), &*outside().key()), ("TestMessage.Because", "TestMessage.Outside"));
         assert_ne!(why, outside());
         assert!(matches!(outside().get(), Some(TestMessage::Outside { volts: 34.25, .. })));
         assert!(Message::default().is_empty() && Message::default().to_string().is_empty());
         let error = Message::error(fmt::Error);
-        assert_eq!((error.to_string(), error.key()), (fmt::Error.to_string(), "core::fmt::Error"));
+        assert_eq!((error.to_string(), &*error.key()), (fmt::Error.to_string(), "core::fmt::Error"));
+    }
+
+    #[test]
+    fn the_members_of_an_error_have_a_key_each() {
+        #[derive(Debug)]
+        #[expect(dead_code, reason = "only its form is looked at")]
+        enum Lacks {
+            Port,
+            Rate { baud: u32 },
+        }
+        impl fmt::Display for Lacks {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                write!(f, "It has no {self:?}.")
+            }
+        }
+        impl Error for Lacks {}
+        let keys =
+            [Lacks::Port, Lacks::Rate { baud: 9600 }].map(|error| Message::error(error).key().into_owned());
+        let kind = std::any::type_name::<Lacks>();
+        assert_eq!(keys, [format!("{kind}.Port"), format!("{kind}.Rate")]);
     }
 
     /// What a catalogue does: other words for the key, with the same values put in.
     #[test]
     fn another_language_needs_the_key_and_the_values_alone() {
         fn german(message: &Message) -> String {
-            let words = match message.key() {
+            let words = match &*message.key() {
                 "TestMessage.Outside" => "{title}: {volts} V, erlaubt sind {limit} V.",
                 _ => return message.to_string(),
             };

@@ -1,5 +1,7 @@
 //! The folder in which everything is kept.
 
+use std::borrow::Cow;
+use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -7,6 +9,7 @@ use std::sync::Arc;
 use crate::messages::CoreRemedyMessage;
 use brushwork_link::files::{Disk, Files, replace};
 use brushwork_link::{Failure, Message};
+use brushwork_values::{Words, error_key};
 use serde::de::DeserializeOwned;
 use thiserror::Error;
 
@@ -161,15 +164,26 @@ pub enum KeepError {
 impl KeepError {
     /// As a failure of an act that needed it.
     pub fn failure(self, tried: impl Into<Message>) -> Failure {
-        let came_back = Message::error(Clause(self));
+        let came_back = Clause(self);
         Failure::new(tried, "this computer", came_back, CoreRemedyMessage::ThenTryAgain)
     }
 }
 
 /// The error without its full stop.
-#[derive(Debug, Error)]
-#[error("{}", .0.to_string().trim_end_matches('.'))]
+#[derive(Debug)]
 struct Clause(KeepError);
+
+impl fmt::Display for Clause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.0.to_string().trim_end_matches('.'))
+    }
+}
+
+impl Words for Clause {
+    fn key(&self) -> Cow<'static, str> {
+        error_key(&self.0).into()
+    }
+}
 
 /// The folder in which everything is kept. Clones are the same folder.
 #[derive(Clone, Debug)]

@@ -5,7 +5,9 @@ use crate::failure::Failure;
 use crate::messages::RemedyMessage;
 use crate::transport::TransportError;
 use crate::unit::FirmwareGeneration;
-use brushwork_values::Message;
+use brushwork_values::{Message, Words, error_key};
+use std::borrow::Cow;
+use std::fmt;
 use std::time::Duration;
 
 /// Why a request has no reply that could be used.
@@ -235,13 +237,24 @@ impl ExchangeError {
     /// The error with its causes as a message.
     #[must_use]
     pub fn message(&self) -> Message {
-        Message::error(WithCauses(self.clone()))
+        WithCauses(self.clone()).into()
     }
 }
 
-#[derive(Debug, thiserror::Error)]
-#[error("{}", .0.full())]
+#[derive(Debug)]
 struct WithCauses(ExchangeError);
+
+impl fmt::Display for WithCauses {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0.full())
+    }
+}
+
+impl Words for WithCauses {
+    fn key(&self) -> Cow<'static, str> {
+        error_key(&self.0).into()
+    }
+}
 
 const MAY_HAVE_RUN: &str = "the command may have been carried out";
 
@@ -249,8 +262,8 @@ const MAY_HAVE_RUN: &str = "the command may have been carried out";
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tries(pub u32);
 
-impl std::fmt::Display for Tries {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl fmt::Display for Tries {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} {}", self.0, if self.0 == 1 { "try" } else { "tries" })
     }
 }
@@ -258,8 +271,8 @@ impl std::fmt::Display for Tries {
 /// What is said about bytes that were not enough for a reply.
 struct Heard(usize);
 
-impl std::fmt::Display for Heard {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl fmt::Display for Heard {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.0 {
             0 => Ok(()),
             1 => f.write_str(", only one byte came"),

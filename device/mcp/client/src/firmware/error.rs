@@ -1,9 +1,11 @@
 //! Why a transfer broke, and in which state that leaves the controller.
 
 use crate::messages::{McpActMessage, McpRemedyMessage};
-use brushwork_link::Message;
 use brushwork_link::failure::Failure;
 use brushwork_link::transport::TransportError;
+use brushwork_values::{Words, error_key};
+use std::borrow::Cow;
+use std::fmt;
 use std::time::Duration;
 
 /// In which state a controller is left.
@@ -90,7 +92,7 @@ impl SendError {
     /// The failure as it is shown.
     #[must_use]
     pub fn failure(&self, on: impl Into<String>) -> Failure {
-        let came_back = Message::error(WithCauses(self.clone()));
+        let came_back = WithCauses(self.clone());
         Failure::new(McpActMessage::SendFirmware, on, came_back, self.left().remedy())
     }
 
@@ -104,6 +106,17 @@ impl SendError {
     }
 }
 
-#[derive(Debug, thiserror::Error)]
-#[error("{}", .0.full())]
+#[derive(Debug)]
 struct WithCauses(SendError);
+
+impl fmt::Display for WithCauses {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0.full())
+    }
+}
+
+impl Words for WithCauses {
+    fn key(&self) -> Cow<'static, str> {
+        error_key(&self.0).into()
+    }
+}
