@@ -182,7 +182,7 @@ fn print(
     }
     out.lines(identity.notes.iter().map(|note| format!("Note: {note}")))?;
     let settings = identity.family.settings();
-    let absent = readings.capabilities.absent().map(|command| settings.read_phrase(command));
+    let absent = readings.capabilities.absent().map(|command| settings.learned_phrase(command));
     out.lines(absent.map(|command| format!("Note: This firmware does not have: {command}.")))?;
     if let Some(diagnosis) = &diagnosis {
         out.line(&diagnosis.sentence)?;
@@ -236,7 +236,7 @@ fn learned(identity: &Identity, readings: &Readings) -> Vec<LearnedCommand> {
     let settings = identity.family.settings();
     let entry = |(command, presence, learned): (u8, Presence, Learned)| LearnedCommand {
         command,
-        title: settings.read_title(command),
+        title: settings.learned_title(command),
         presence,
         quickest_ms: learned.quickest_ms,
     };

@@ -209,6 +209,7 @@ messages! {
 messages! {
     /// What came back of what was tried, as a clause.
     pub enum CauseMessage {
+        NotAgreedTo "more would have to be agreed to before this is asked",
         NoWayIntoLoader "there is no way into its firmware loader from here",
         BytesNotTaken "bytes are not taken as they are here; put the command together by its number",
         NoEncoder "it has no encoder whose count could be set",

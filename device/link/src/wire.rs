@@ -48,6 +48,11 @@ pub trait Wire {
         None
     }
 
+    /// Whether the unit's firmware is known to lack what its capability map has under this number.
+    fn lacks(&self, _number: u8) -> bool {
+        false
+    }
+
     /// Tells whoever waits how far the work is.
     fn report_progress(&mut self, _done: usize, _of: usize, _what: &str) {}
 

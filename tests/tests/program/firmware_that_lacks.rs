@@ -10,11 +10,16 @@ use std::thread;
 use std::time::Instant;
 
 use brushwork_mcp_wire::packet_serial::number;
+use brushwork_motion_mind_wire::numbers as motion_mind;
+use brushwork_motion_mind_wire::register_number;
 use brushwork_tests::program::{Ending, Program};
 use brushwork_tests::wait::LIMIT;
 use serde_json::Value;
 
 const BRUSHWORK: &str = env!("CARGO_BIN_EXE_brushwork-for-tests");
+
+/// What of a request the firmware lacks, as its capability map numbers it.
+type Lacks = Box<dyn Fn(&[u8]) -> Option<u8> + Send>;
 
 /// A simulated controller behind a line that keeps some commands from it: firmware without them.
 struct Lacking {
@@ -25,14 +30,36 @@ struct Lacking {
 
 impl Lacking {
     fn start(model: &str, generation: &str, lacks: &'static [u8]) -> Self {
-        let mut sim = Program::start(
-            BRUSHWORK,
-            &["sim", "--model", model, "--tcp", "127.0.0.1:0", "--generation", generation],
-        );
-        let greeting = sim.wait_for("Connect with", LIMIT);
+        let command_of = |request: &[u8]| match *request {
+            [address, command, ..] if address >= 0x80 => Some(command),
+            _ => None,
+        };
+        let arguments = ["--model", model, "--generation", generation];
+        Self::behind(&arguments, Box::new(move |request| command_of(request).filter(|it| lacks.contains(it))))
+    }
+
+    /// A Motion Mind that answers no read in which one of the registers is.
+    fn motion_mind(lacks: &'static [u8]) -> Self {
+        let registers = |request: &[u8]| match *request {
+            [motion_mind::READ, _, a, b, c, d, _] => u32::from_le_bytes([a, b, c, d]),
+            [motion_mind::READ_REGISTER, _, register, _] => 1 << register,
+            _ => 0,
+        };
+        let lacking = move |request: &[u8]| {
+            let asked = registers(request);
+            lacks.iter().copied().find(|register| asked >> register & 1 == 1)
+        };
+        Self::behind(&["--model", "motion-mind-3", "--mode", "4"], Box::new(lacking))
+    }
+
+    fn behind(arguments: &[&str], lacks: Lacks) -> Self {
+        let mut sim = Program::start(BRUSHWORK, &[&["sim", "--tcp", "127.0.0.1:0"], arguments].concat());
+        let greeting = sim.wait_for("tcp:127.0.0.1:", LIMIT);
         let behind = greeting.rsplit("tcp:").next().unwrap_or_default().to_owned();
         let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
-        let target = format!("tcp:{},stream=usb", listener.local_addr().expect("it has an address"));
+        let place = listener.local_addr().expect("it has an address");
+        let is_mcp = !arguments.contains(&"motion-mind-3");
+        let target = format!("tcp:{place}{}", if is_mcp { ",stream=usb" } else { "" });
         let asked = Arc::new(Mutex::new(BTreeMap::new()));
         let counts = Arc::clone(&asked);
         // The thread ends with the test's process; it waits for clients for as long as there may be some.
@@ -42,8 +69,8 @@ impl Lacking {
                 let _ = client.set_nodelay(true).and_then(|()| unit.set_nodelay(true));
                 let back = client.try_clone().and_then(|to| Ok((unit.try_clone()?, to)));
                 let (from, to) = back.expect("a connection can be held twice");
-                named("lacking line back", move || pass(from, to, &[], &Mutex::default()));
-                pass(client, unit, lacks, &counts);
+                named("lacking line back", move || pass(from, to, &|_| None, &Mutex::default()));
+                pass(client, unit, &lacks, &counts);
             }
         });
         Self { _sim: sim, target, asked }
@@ -64,19 +91,24 @@ fn named(name: &str, work: impl FnOnce() + Send + 'static) {
     thread::Builder::new().name(name.to_owned()).spawn(work).expect("a thread can be started");
 }
 
-/// Passes bytes on but for packets of the commands that are lacking, which are counted. A request of this program comes in one write.
-fn pass(mut from: TcpStream, mut to: TcpStream, lacks: &[u8], asked: &Mutex<BTreeMap<u8, usize>>) {
+/// Passes bytes on but for requests of what is lacking, which are counted. A request of this program comes in one write.
+fn pass(
+    mut from: TcpStream,
+    mut to: TcpStream,
+    lacks: &dyn Fn(&[u8]) -> Option<u8>,
+    asked: &Mutex<BTreeMap<u8, usize>>,
+) {
     let mut bytes = [0; 1024];
     while let Ok(count) = from.read(&mut bytes) {
         if count == 0 {
             break;
         }
-        match bytes[..count] {
-            [address, command, ..] if address >= 0x80 && lacks.contains(&command) => {
-                *asked.lock().expect("no test has failed with it").entry(command).or_insert(0) += 1;
+        match lacks(&bytes[..count]) {
+            Some(lacking) => {
+                *asked.lock().expect("no test has failed with it").entry(lacking).or_insert(0) += 1;
             }
-            _ if to.write_all(&bytes[..count]).is_err() => break,
-            _ => {}
+            None if to.write_all(&bytes[..count]).is_err() => break,
+            None => {}
         }
     }
     let _ = to.shutdown(std::net::Shutdown::Both);
@@ -138,4 +170,30 @@ fn settings_that_a_firmware_lacks_are_no_failure_and_are_not_blamed_on_the_cable
         let said = ending.stderr.join("\n");
         assert!(said.contains("this firmware does not have it") && !said.contains("baud rate"), "{said}");
     }
+}
+
+/// A Motion Mind reads many registers at once, so that one that its firmware lacks would keep all from being read.
+#[test]
+fn a_register_that_a_motion_mind_lacks_keeps_no_other_from_being_read() {
+    let unit = Lacking::motion_mind(&[register_number::THERMISTOR, register_number::DEADBAND]);
+    let first = unit.run(&["settings", "read", "--json"]);
+    println!("asked at first: {:?}", unit.take_asked());
+    assert_eq!(first.status.code(), Some(0), "{first:?}");
+    unit.run(&["status"]);
+    unit.take_asked();
+    let status = unit.run(&["status", "--commands", "--json"]);
+    let again = unit.run(&["settings", "read"]);
+    assert_eq!(unit.take_asked(), BTreeMap::new(), "what is known to be lacking is not asked for");
+    assert_eq!((status.status.code(), again.status.code()), (Some(0), Some(0)), "{status:?} {again:?}");
+    let json: Value = serde_json::from_str(&status.stdout.join("\n")).expect("JSON");
+    let of =
+        |wanted: u8| json["commands"].as_array()?.iter().find(|known| known["command"] == wanted).cloned();
+    let lacking = of(register_number::THERMISTOR).expect("it was learned");
+    assert_eq!((&lacking["presence"], &lacking["title"]), (&"absent".into(), &"THERMISTOR".into()), "{json}");
+    assert_ne!(of(register_number::POSITION).expect("it is read")["presence"], "absent", "{json}");
+    let readings = &json["readings"];
+    assert!(readings["m1_position"].is_number() && readings["m1_current"].is_number(), "{json}");
+    assert!(readings["temperature_1"].is_null(), "{json}");
+    let text = unit.run(&["status"]).stdout.join("\n");
+    assert!(text.contains("This firmware does not have: THERMISTOR ("), "{text}");
 }

@@ -357,6 +357,6 @@ impl LinkView {
 
 fn titles(unit: &Identity, commands: &[u8]) -> String {
     let titles: Vec<_> =
-        commands.iter().map(|command| unit.family.settings().read_phrase(*command)).collect();
+        commands.iter().map(|command| unit.family.settings().learned_phrase(*command)).collect();
     titles.join(", ")
 }

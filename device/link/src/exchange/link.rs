@@ -95,6 +95,12 @@ impl Exchange {
         &mut self.capabilities
     }
 
+    /// Whether the firmware of the unit at an address is known to lack something.
+    #[must_use]
+    pub fn lacks(&self, address: u8, number: u8) -> bool {
+        self.capabilities.lacks(address, number)
+    }
+
     /// Requests that were sent again since the link was opened.
     #[must_use]
     pub fn retries(&self) -> u64 {

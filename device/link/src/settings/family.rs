@@ -41,6 +41,21 @@ pub trait FamilySettings: Send + Sync {
         format!("{} ({command})", self.read_title(command))
     }
 
+    /// What an entry of a capability map stands for: by default the command of that number.
+    fn learned_title(&self, number: u8) -> &'static str {
+        self.read_title(number)
+    }
+
+    /// The same for sentences.
+    fn learned_phrase(&self, number: u8) -> String {
+        format!("{} ({number})", self.learned_title(number))
+    }
+
+    /// Under which number a capability map has what brings a field of a command's reply, where it may lack in a reply to others.
+    fn learned_number(&self, _command: u8, _field: &str) -> Option<u8> {
+        None
+    }
+
     /// What the command that writes these rows takes, in wire order.
     fn arguments(&self, planned: &Planned<'_>) -> Result<Vec<Argument>, Message>;
 

@@ -211,7 +211,10 @@ impl<'w> Reader<'w> {
                     match self.replies.get(&command) {
                         Some(Ok(values)) => match raw_of(values, place, record) {
                             Some(raw) => image.set(&row.key, row.decode(raw)),
-                            None => failures.incomplete(command, row),
+                            None => match self.lacking(command, place) {
+                                Some(error) => failures.no_reply(command, row, &error),
+                                None => failures.incomplete(command, row),
+                            },
                         },
                         Some(Err(error)) => failures.no_reply(command, row, error),
                         None => failures.incomplete(command, row),
@@ -228,6 +231,14 @@ impl<'w> Reader<'w> {
         (image, failures.list)
     }
 
+    /// Why a field is missing in a reply that others are in: the firmware has it not.
+    fn lacking(&self, command: u8, place: Place) -> Option<ExchangeError> {
+        let settings = self.wire.address().family().settings();
+        let number = settings.learned_number(command, place.field)?;
+        let command = settings.learned_phrase(number);
+        self.wire.lacks(number).then_some(ExchangeError::Absent { command })
+    }
+
     fn gave_up(&self, error: &ExchangeError) -> Failure {
         error.failure(ActMessage::ReadSettings, self.wire.describe())
     }
@@ -242,42 +253,29 @@ struct Failures {
 
 impl Failures {
     fn no_reply(&mut self, command: u8, row: &Row, error: &ExchangeError) {
-        let failure = || error.failure(self.read(command), &self.on);
-        let failure = if self.knows(command) { None } else { Some(failure()) };
-        self.add(
-            command,
-            row,
-            failure,
-            matches!(error, ExchangeError::Absent { .. } | ExchangeError::Untold { .. }),
-        );
+        let is_absent = matches!(error, ExchangeError::Absent { .. } | ExchangeError::Untold { .. });
+        let failure = error.failure(self.read(command), &self.on);
+        self.add(row, ReadFailure { command, keys: Vec::new(), failure, is_absent });
     }
 
     fn incomplete(&mut self, command: u8, row: &Row) {
-        let failure = (!self.knows(command)).then(|| {
-            Failure::new(
-                self.read(command),
-                &self.on,
-                CauseMessage::ReplyTooShort,
-                RemedyMessage::CheckFirmware,
-            )
-        });
-        self.add(command, row, failure, false);
+        let (read, cause) = (self.read(command), CauseMessage::ReplyTooShort);
+        let failure = Failure::new(read, &self.on, cause, RemedyMessage::CheckFirmware);
+        self.add(row, ReadFailure { command, keys: Vec::new(), failure, is_absent: false });
     }
 
     fn read(&self, command: u8) -> ActMessage {
         ActMessage::Read { phrase: self.family.settings().read_phrase(command) }
     }
 
-    fn knows(&self, command: u8) -> bool {
-        self.list.iter().any(|known| known.command == command)
-    }
-
-    fn add(&mut self, command: u8, row: &Row, failure: Option<Failure>, is_absent: bool) {
-        if let Some(failure) = failure {
-            self.list.push(ReadFailure { command, keys: Vec::new(), failure, is_absent });
-        }
-        if let Some(known) = self.list.iter_mut().find(|known| known.command == command) {
-            known.keys.push(row.key.clone());
+    /// Counts a row to the failure of its command, of which one is told.
+    fn add(&mut self, row: &Row, failure: ReadFailure) {
+        let is_same = |known: &&mut ReadFailure| {
+            (known.command, known.is_absent) == (failure.command, failure.is_absent)
+        };
+        match self.list.iter_mut().find(is_same) {
+            Some(known) => known.keys.push(row.key.clone()),
+            None => self.list.push(ReadFailure { keys: vec![row.key.clone()], ..failure }),
         }
     }
 }

@@ -152,7 +152,6 @@ messages! {
         NodeTakesNoPackets "a node of a CAN bus takes no packets",
         NoCommand "these bytes are no command of packet serial",
         OnePacket "one packet goes out at a time",
-        NotAgreedTo "more would have to be agreed to before this is asked",
         DoesTooMuch "this command can do more than an examination may",
         NothingAnswered { asked: Message } "nothing answered at {asked}",
         OneByteCame { asked: Message } "one byte came, but no packet serial, from {asked}",

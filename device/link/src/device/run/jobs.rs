@@ -233,6 +233,10 @@ impl Wire for Host<'_> {
         self.core.options.hidden.as_deref()
     }
 
+    fn lacks(&self, number: u8) -> bool {
+        self.core.exchange.lacks(self.identity().address, number)
+    }
+
     fn report_progress(&mut self, done: usize, of: usize, what: &str) {
         let fraction = if of == 0 { None } else { Some(done as f32 / of as f32) };
         self.progress(fraction, what);

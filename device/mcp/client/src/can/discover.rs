@@ -130,6 +130,7 @@ impl CanOpen {
             }
         };
         self.monitor.know(node, Who::Controller(version.clone()));
+        line.exchange().capabilities().introduce(node.get(), &format!("{version} as a node"));
         let mut notes = identity_notes(line, place)?;
         if let Some(state) = self.monitor.state(node) {
             notes.push(McpIdentityMessage::Heartbeat { state: state.to_string() }.into());

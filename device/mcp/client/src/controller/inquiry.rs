@@ -7,6 +7,7 @@ use crate::messages::McpCauseMessage;
 use brushwork_link::device::controller::Line;
 use brushwork_link::device::{Heard, Inquiry, Leave};
 use brushwork_link::exchange::{ExchangeError, Judgement, Outgoing, Reply};
+use brushwork_link::messages::CauseMessage;
 use brushwork_mcp_wire::crc::crc16_xmodem;
 use brushwork_mcp_wire::packet_serial::{ClientUse, Command, Direction, Effect, Form, lookup, number};
 use brushwork_values::Values;
@@ -88,7 +89,7 @@ fn check(speaker: Speaker, inquiry: &Inquiry<'_>) -> Result<&'static Command, Ex
     let needed = if is_standstill { Some(Leave::Write) } else { leave_for(command) };
     match needed {
         Some(needed) if needed <= inquiry.leave => Ok(command),
-        Some(_) => impossible(McpCauseMessage::NotAgreedTo),
+        Some(_) => Err(ExchangeError::impossible(CauseMessage::NotAgreedTo)),
         None => impossible(McpCauseMessage::DoesTooMuch),
     }
 }

@@ -4,7 +4,7 @@ use crate::controller::MotionMindFacts;
 use crate::controller::borrowed::Borrowed;
 use crate::controller::traffic::{describe_received, describe_sent};
 use crate::controller::unit::MotionMind;
-use crate::controller::{arming, driving, polling, raw, stopping};
+use crate::controller::{arming, driving, inquiry, polling, raw, stopping};
 use crate::messages::MotionMindCauseMessage;
 use brushwork_link::device::Described;
 use brushwork_link::device::Drive;
@@ -12,6 +12,7 @@ use brushwork_link::device::Identity;
 use brushwork_link::device::Sample;
 use brushwork_link::device::StatusReport;
 use brushwork_link::device::controller::{ArmCheck, Controller, Line, PollItem, PollList};
+use brushwork_link::device::{Heard, Inquiry};
 use brushwork_link::device::{StopBytes, UnitStop};
 use brushwork_link::exchange::{ExchangeError, Reply as Answer};
 use brushwork_link::settings::SettingsImage;
@@ -104,6 +105,10 @@ impl Controller for MotionMind {
             self.note(&command);
         }
         Ok(heard)
+    }
+
+    fn inquire(&mut self, line: &mut Line<'_>, asked: &Inquiry<'_>) -> Result<Heard, ExchangeError> {
+        inquiry::inquire(self.speaker, line, asked)
     }
 
     fn raw_undermines_arming(&self, bytes: &[u8]) -> bool {

@@ -219,6 +219,8 @@ fn identify(line: &mut Line<'_>, mut speaker: Speaker, simulated: bool) -> Resul
     let (reply, _) = speaker.ask(line, &Command::Read(wanted))?;
     let value = |index: u8| value_in(&reply, index).unwrap_or_default();
     let revision = u8::try_from(value(number::REVISION)).unwrap_or_default();
+    let version = format!("{NAME} revision {revision}");
+    line.exchange().capabilities().introduce(speaker.address.get(), &version);
     let mode = u8::try_from(value(number::MODE)).ok().and_then(Mode::from_number);
     speaker.returns = Some(returns_of(value(number::FUNCTION)));
     let mut notes = Vec::new();
@@ -236,7 +238,7 @@ fn identify(line: &mut Line<'_>, mut speaker: Speaker, simulated: bool) -> Resul
         address: speaker.address.get(),
         family: MOTION_MIND,
         protocol: MOTION_MIND.label(),
-        version_text: format!("{NAME} revision {revision}"),
+        version_text: version,
         model: Some(NAME),
         firmware: revision.to_string(),
         generation: firmware_of(revision),

@@ -15,6 +15,8 @@ mod discover;
 mod driving;
 mod facts;
 pub mod indicators;
+mod inquiry;
+mod learned;
 mod polling;
 mod raw;
 mod registers;

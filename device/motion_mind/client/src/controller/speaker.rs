@@ -51,25 +51,23 @@ impl Speaker {
         }
     }
 
-    /// Sends a command and gives what came back.
-    pub fn ask(&mut self, line: &mut Line<'_>, command: &Command) -> Result<(Reply, Span), ExchangeError> {
-        let command = self.in_own_words(command);
-        self.gate(line, &command)?;
+    /// Sends a command in the unit's own words that was looked at, and gives what came back.
+    pub fn send(&mut self, line: &mut Line<'_>, command: &Command) -> Result<(Reply, Span), ExchangeError> {
         self.pause(line)?;
-        let bytes = self.encode(&command)?;
+        let bytes = self.encode(command)?;
         let retries = line.retries();
         let outgoing = Outgoing {
             bytes: &bytes,
-            reply_length: self.reply_length(&command),
-            patience: self.work(&command),
+            reply_length: self.reply_length(command),
+            patience: self.work(command),
             retries,
             once: command.effect() == Effect::RelativeMotion,
         };
         let mut reply = Reply::Acknowledged;
         let (exchange, watch) = line.parts();
         let span =
-            exchange.exchange(&outgoing, watch, &mut |bytes| self.judge(&command, bytes, &mut reply))?;
-        if let Command::Write { register, value } | Command::WriteStore { register, value } = command {
+            exchange.exchange(&outgoing, watch, &mut |bytes| self.judge(command, bytes, &mut reply))?;
+        if let Command::Write { register, value } | Command::WriteStore { register, value } = *command {
             self.note_write(register, value);
         }
         Ok((reply, span))
@@ -123,7 +121,7 @@ impl Speaker {
     }
 
     /// A read as the unit's protocol has it.
-    fn in_own_words(&self, command: &Command) -> Command {
+    pub fn in_own_words(&self, command: &Command) -> Command {
         match (self.protocol, *command) {
             (Protocol::Text, Command::ReadRegister(_) | Command::Read(_) | Command::ReadText(_))
                 if self.is_loose =>
@@ -142,7 +140,7 @@ impl Speaker {
     }
 
     /// What drives the motor needs arming; a unit that would give no answer is not spoken to.
-    fn gate(&self, line: &Line<'_>, command: &Command) -> Result<(), ExchangeError> {
+    pub fn gate(&self, line: &Line<'_>, command: &Command) -> Result<(), ExchangeError> {
         if let Command::ReadRegister(index) | Command::ReadText(Part::Register(index)) = command
             && register(*index).is_none()
         {

@@ -12,7 +12,7 @@ use brushwork_link::settings::{
 use brushwork_link::unit::{FirmwareGeneration, UnitAddress};
 use brushwork_link::wire::Wire;
 use brushwork_link::{Failure, Message};
-use brushwork_motion_mind_wire::{Register, numbers, register, register_number};
+use brushwork_motion_mind_wire::{Register, numbers, register, register_named, register_number};
 use brushwork_values::Values;
 
 /// The settings as the engine sees them.
@@ -34,6 +34,14 @@ impl FamilySettings for MotionMindSettings {
 
     fn read_phrase(&self, command: u8) -> String {
         self.read_title(command).to_owned()
+    }
+
+    fn learned_number(&self, _command: u8, field: &str) -> Option<u8> {
+        register_named(field).map(|row| row.number)
+    }
+
+    fn learned_title(&self, number: u8) -> &'static str {
+        register(number).map_or("", |row| row.name)
     }
 
     fn arguments(&self, planned: &Planned<'_>) -> Result<Vec<Argument>, Message> {
