@@ -54,7 +54,7 @@ pub static FAMILIES: [Family; 4] = [
     Family {
         driver: &brushwork_motion_mind_client::MotionMindDriver,
         simulator: &brushwork_motion_mind::MotionMindSimulator,
-        examiner: None,
+        examiner: Some(&brushwork_motion_mind::MotionMindExaminer),
         window: &brushwork_gui::motion_mind::MotionMind,
         commands: &brushwork_cli::motion_mind::MotionMindCommands,
         #[cfg(feature = "bench")]

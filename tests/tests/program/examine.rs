@@ -6,7 +6,7 @@ use std::time::Duration;
 use brushwork_core::examine::{Examination, Examining, Need, State, Step, Way};
 use brushwork_core::keep::TrialKeeper;
 use brushwork_core::session::line::SimulatedLine;
-use brushwork_family::{Simulator as _, Started};
+use brushwork_family::{Simulator, Started};
 use brushwork_link::device::{Addresses, ArmScope, DeviceHandle, DeviceOptions, Event, Identity, JobEnding};
 use brushwork_link::settings::{Ending, Entry, Keeper};
 use brushwork_link::{Failure, Stream, WriteOptions};
@@ -15,6 +15,8 @@ use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig, FirmwareO
 use brushwork_mcp_sim::motion::{ControlLaw, GainTiming};
 use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::packet_serial::{Generation, number};
+use brushwork_motion_mind::{MotionMindSimulator, MotionMindSpec};
+use brushwork_motion_mind_wire::{Mode, Protocol, register_number};
 use brushwork_plant::machine::StreamIndex;
 use brushwork_tests::program::{Ending as Ended, Program};
 use brushwork_tests::virtual_link::VirtualLink;
@@ -106,10 +108,14 @@ fn examined(started: Started, most: Need) -> Examination {
 
 /// A unit made like a report gives the same report.
 fn reproduces(found: &Examination, most: Need) -> Vec<String> {
+    reproduces_by(&McpSimulator, found, most)
+}
+
+fn reproduces_by(simulator: &dyn Simulator, found: &Examination, most: Need) -> Vec<String> {
     // As a file carries it.
     let read = Examination::parse(&found.json()).expect("it is a report");
     assert_eq!(&read, found);
-    let (started, unlike) = McpSimulator.like(&read).expect("it is a report of the family");
+    let (started, unlike) = simulator.like(&read).expect("it is a report of the family");
     let again = examined(started, most);
     let (first, second) = (found.behaviour(), again.behaviour());
     for (one, other) in first.answers.iter().zip(&second.answers) {
@@ -230,6 +236,34 @@ fn a_firmware_that_lacks_commands_is_slow_late_and_partly_of_another_generation_
     let unlike = reproduces(&found, Need::Write);
     assert!(unlike.iter().all(|sentence| sentence.starts_with("The examination does not say")), "{unlike:?}");
     assert_eq!(unlike.len(), 4, "the motor was not moved: {unlike:?}");
+}
+
+#[test]
+fn a_motion_mind_is_asked_in_both_protocols_and_imitated() {
+    for protocol in Protocol::ALL {
+        let lacks = 1 << register_number::THERMISTOR | 1 << register_number::DEADBAND;
+        let spec =
+            MotionMindSpec { protocol, mode: Mode::Serial, revision: 7, lacks, ..MotionMindSpec::default() };
+        let address = brushwork_motion_mind_client::unit_address(1).expect("it is one of the family");
+        let bus = spec.bus().expect("its figures make sense");
+        let found = examined(Started::on_a_line(Box::new(bus), vec![address], 1), Need::Save);
+        let value = |key: &str| found.value(key).unwrap_or_else(|| panic!("{key}: {}", found.text())).clone();
+        let is_text = protocol == Protocol::Text;
+        let named = if is_text { "ascii" } else { "binary" };
+        assert_eq!(value("switches"), json!({ "mode": 3, "protocol": named }));
+        assert_eq!(value("lacking"), json!([register_number::DEADBAND, register_number::THERMISTOR]));
+        assert_eq!((value("back_to_back"), value("tick")), (json!(true), json!(true)), "{}", found.text());
+        assert_eq!(value("read_only"), json!({ "acknowledged": true, "changes": false }));
+        assert!(
+            value("store_time").as_f64().is_some_and(|ms| (40.0..70.0).contains(&ms)),
+            "{}",
+            found.text()
+        );
+        let expected = if is_text { State::Answered } else { State::Unclear };
+        assert_eq!(found.answer("small_letters").expect("it is a question").state, expected);
+        assert_eq!((found.unit.firmware.as_str(), found.commands.len()), ("7", 32));
+        assert_eq!(reproduces_by(&MotionMindSimulator, &found, Need::Save), Vec::<String>::new());
+    }
 }
 
 /// The registers of motor 1's loops, and the time-out of the served stream.

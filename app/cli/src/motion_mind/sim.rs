@@ -96,6 +96,7 @@ fn spec_of(args: &SimArgs, switches: &Switches) -> Result<MotionMindSpec, String
         revision: switches.revision.unwrap_or(REVISION),
         preset: preset.transpose()?,
         seed: args.seed,
+        ..MotionMindSpec::default()
     })
 }
 

@@ -5,7 +5,7 @@ mod question;
 mod report;
 mod text;
 
-pub use question::{Need, Question, Step};
+pub use question::{Assumed, Need, NotAskable, Question, Standing, Step, not_asked};
 pub use report::{
     Answer, CommandFound, Examination, ExaminationError, Line, RawWrite, SCHEMA, State, Unit, VERSION,
 };
@@ -14,15 +14,6 @@ use brushwork_link::device::JobContext;
 use brushwork_link::{Failure, FamilyRef, Identity};
 use brushwork_values::Motor;
 use std::sync::{PoisonError, RwLock};
-
-/// What is assumed and cannot be asked, or is not.
-#[derive(Clone, Copy, Debug)]
-pub struct NotAskable {
-    /// What is assumed, or what nobody knows.
-    pub what: &'static str,
-    /// Why it is not asked.
-    pub why: &'static str,
-}
 
 /// What examines the units of a family.
 pub trait Examiner: Send + Sync {

@@ -49,3 +49,56 @@ pub struct Question {
     /// How it is asked, and how the answer reads.
     pub how: &'static str,
 }
+
+/// What is assumed or open and cannot be asked, or is not.
+#[derive(Clone, Copy, Debug)]
+pub struct NotAskable {
+    /// What is assumed, or what nobody knows.
+    pub what: &'static str,
+    /// Why it is not asked.
+    pub why: &'static str,
+}
+
+/// What stands in a file as assumed.
+#[derive(Clone, Copy, Debug)]
+pub struct Assumed {
+    /// The file, from the family's folder on.
+    pub file: &'static str,
+    /// What is assumed there; nothing where questions alone ask it.
+    pub what: &'static str,
+    /// What becomes of it.
+    pub standing: Standing,
+}
+
+/// Whether something that is assumed is asked.
+#[derive(Clone, Copy, Debug)]
+pub enum Standing {
+    /// By these questions.
+    Asked(&'static [&'static str]),
+    /// It is not, for this reason.
+    Not(&'static str),
+}
+
+impl Assumed {
+    /// What these questions ask.
+    #[must_use]
+    pub const fn asked(file: &'static str, questions: &'static [&'static str]) -> Self {
+        Self { file, what: "", standing: Standing::Asked(questions) }
+    }
+
+    /// What is not asked, for this reason.
+    #[must_use]
+    pub const fn not(file: &'static str, what: &'static str, why: &'static str) -> Self {
+        Self { file, what, standing: Standing::Not(why) }
+    }
+}
+
+/// Of what is assumed, that which is not asked.
+#[must_use]
+pub fn not_asked(assumed: &[Assumed]) -> Vec<NotAskable> {
+    let row = |row: &Assumed| match row.standing {
+        Standing::Asked(_) => None,
+        Standing::Not(why) => Some(NotAskable { what: row.what, why }),
+    };
+    assumed.iter().filter_map(row).collect()
+}

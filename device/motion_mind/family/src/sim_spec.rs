@@ -29,6 +29,8 @@ pub struct MotionMindSpec {
     pub decode: EncoderDecode,
     /// The firmware, as register 17 tells it.
     pub revision: u8,
+    /// Registers that its firmware does not have, by their bits.
+    pub lacks: u32,
     /// The motor; that of the first preset if none is named.
     pub preset: Option<String>,
     /// Seed of the measurement noise; 0 for none.
@@ -44,6 +46,7 @@ impl Default for MotionMindSpec {
             is_fast: true,
             decode: EncoderDecode::Times4,
             revision: assumed::REVISION,
+            lacks: 0,
             preset: None,
             seed: 1,
         }
@@ -130,6 +133,7 @@ impl MotionMindSpec {
             is_fast: self.is_fast,
             decode: self.decode,
             revision: self.revision,
+            lacks: self.lacks,
             ..MotionMindConfig::new(self.mode)
         };
         config.seed = if self.seed == 0 { 0 } else { self.seed.wrapping_add(address.get().into()).max(1) };

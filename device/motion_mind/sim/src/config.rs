@@ -49,6 +49,8 @@ pub struct MotionMindConfig {
     pub is_fast: bool,
     /// Register 17.
     pub revision: u8,
+    /// Registers that its firmware does not have, by their bits: a read that asks for one of them is not answered.
+    pub lacks: u32,
     /// The motor and all around it. Motor 2 is not connected.
     pub world: WorldParams,
     /// What is on the input pins at the start.
@@ -68,6 +70,7 @@ impl MotionMindConfig {
             decode: EncoderDecode::Times4,
             is_fast: true,
             revision: super::assumed::REVISION,
+            lacks: 0,
             world: presets::world_of(preset, preset, pin::COUNT),
             signals: Vec::new(),
             seed: 0,

@@ -401,6 +401,7 @@ impl MotionMind {
                 }
             }
             Order::SelfTest(address) if self.listens_to(address) => self.is_testing = true,
+            Order::Command(_, command) if self.lacks(&command) => {}
             Order::Command(address, command) if self.listens_to(address) => {
                 let own = self.address();
                 let reply = self.execute(&command);
@@ -414,6 +415,26 @@ impl MotionMind {
             }
             Order::SelfTest(_) | Order::Command(..) => {}
         }
+    }
+
+    /// Whether a read asks for a register that its firmware does not have.
+    fn lacks(&self, command: &Command) -> bool {
+        let asked = match *command {
+            Command::Read(mask) => mask,
+            Command::ReadRegister(register) | Command::ReadText(Part::Register(register)) => {
+                1_u32.checked_shl(register.into()).unwrap_or(0)
+            }
+            Command::ReadText(Part::StatusBits | Part::FunctionBits | Part::All)
+            | Command::ChangeSpeed(_)
+            | Command::MoveToAbsolute(_)
+            | Command::MoveToRelative(_)
+            | Command::MoveAtVelocity(_)
+            | Command::Write { .. }
+            | Command::WriteStore { .. }
+            | Command::Restore
+            | Command::Reset => 0,
+        };
+        asked & self.config.lacks != 0
     }
 
     fn address(&self) -> Address {

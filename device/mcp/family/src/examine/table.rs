@@ -3,7 +3,7 @@
 //! Each file of the wire, the client, the axis and the simulator that assumes something stands in [`ASSUMED`]; a test of the house compares. The
 //! questions that the sources leave open are those of the public clients of 2015 to 2025, which contradict each other there.
 
-use brushwork_family::examine::{Need, NotAskable, Question, Step};
+use brushwork_family::examine::{Assumed, Need, NotAskable, Question, Step, not_asked};
 
 /// Keys of the steps.
 pub const FIRMWARE: &str = "firmware";
@@ -161,26 +161,6 @@ pub static STEPS: &[Step] = &[
     },
 ];
 
-/// What stands in a file as assumed.
-#[derive(Clone, Copy, Debug)]
-pub struct Assumed {
-    /// The file, from the family's folder on.
-    pub file: &'static str,
-    /// What is assumed there; nothing where questions alone ask it.
-    pub what: &'static str,
-    /// What becomes of it.
-    pub standing: Standing,
-}
-
-/// Whether something that is assumed is asked.
-#[derive(Clone, Copy, Debug)]
-pub enum Standing {
-    /// By these questions.
-    Asked(&'static [&'static str]),
-    /// It is not, for this reason.
-    Not(&'static str),
-}
-
 /// Questions of the sources that are not asked, beside what files assume.
 const OPEN: [NotAskable; 5] = [
     NotAskable {
@@ -205,14 +185,6 @@ const OPEN: [NotAskable; 5] = [
     },
 ];
 
-const fn asked(file: &'static str, questions: &'static [&'static str]) -> Assumed {
-    Assumed { file, what: "", standing: Standing::Asked(questions) }
-}
-
-const fn not(file: &'static str, what: &'static str, why: &'static str) -> Assumed {
-    Assumed { file, what, standing: Standing::Not(why) }
-}
-
 const OURS: &str = "It is a choice of this program and no property of the unit.";
 const PINS: &str = "It takes known signals at the inputs.";
 const MACHINE: &str = "It takes a machine under load, or one that is disturbed on purpose.";
@@ -226,203 +198,212 @@ const EEPROM: &str = "It takes power cuts or many writes of the EEPROM.";
 
 /// What is assumed, file by file.
 pub static ASSUMED: &[Assumed] = &[
-    asked("axis/src/registers.rs", &["feed_forward", "proportional", "loop_rate", "position_scale"]),
-    not("client/src/can/master.rs", "That node id 127 is free.", BUS),
-    not(
+    Assumed::asked("axis/src/registers.rs", &["feed_forward", "proportional", "loop_rate", "position_scale"]),
+    Assumed::not("client/src/can/master.rs", "That node id 127 is free.", BUS),
+    Assumed::not(
         "client/src/controller/arming.rs",
         "That a stream's time-out stops the motors; that a duty is a current in torque control.",
         MACHINE,
     ),
-    not(
+    Assumed::not(
         "client/src/controller/stopping.rs",
         "That a duty command ends a move and may leave those that wait.",
         LONG_MOVES,
     ),
-    not("client/src/diagnosis/pin_end.rs", "That percent reaches full scale exactly at the ends.", PINS),
-    not("client/src/firmware/send.rs", "How long a page may take to be confirmed.", FIRMWARE_UPDATE),
-    asked("client/src/packet.rs", &["save_restarts"]),
-    not(
+    Assumed::not(
+        "client/src/diagnosis/pin_end.rs",
+        "That percent reaches full scale exactly at the ends.",
+        PINS,
+    ),
+    Assumed::not("client/src/firmware/send.rs", "How long a page may take to be confirmed.", FIRMWARE_UPDATE),
+    Assumed::asked("client/src/packet.rs", &["save_restarts"]),
+    Assumed::not(
         "client/src/settings/pins/mode.rs",
         "Which priority signal an input counts as, and how pulses and encoders read.",
         PINS,
     ),
-    not("client/src/settings/pins/shape.rs", "The curve between an input and its command.", PINS),
-    not(
+    Assumed::not("client/src/settings/pins/shape.rs", "The curve between an input and its command.", PINS),
+    Assumed::not(
         "sim/src/controller/answer.rs",
         "What 248 answers without a script.",
         "With a script it would start it.",
     ),
-    not(
+    Assumed::not(
         "sim/src/controller/bus.rs",
         "That two units of one address answer one after the other.",
         "It takes two units.",
     ),
-    asked("sim/src/controller/can.rs", &["can_errors", "can_dictionary"]),
-    not(
+    Assumed::asked("sim/src/controller/can.rs", &["can_errors", "can_dictionary"]),
+    Assumed::not(
         "sim/src/controller/canbus/dictionary.rs",
         "Heartbeat, vendor and product of a node.",
         "It is read on a CAN bus, which an examination of packets does not see.",
     ),
-    not("sim/src/controller/canbus/mod.rs", "How a node beats and watches a master.", BUS),
-    not("sim/src/controller/canbus/node.rs", "That a reset of a node leaves the controller.", BUS),
-    asked("sim/src/controller/commands/can.rs", &["can_dictionary"]),
-    not(
+    Assumed::not("sim/src/controller/canbus/mod.rs", "How a node beats and watches a master.", BUS),
+    Assumed::not("sim/src/controller/canbus/node.rs", "That a reset of a node leaves the controller.", BUS),
+    Assumed::asked("sim/src/controller/commands/can.rs", &["can_dictionary"]),
+    Assumed::not(
         "sim/src/controller/commands/drive.rs",
         "How a bridged unit takes commands for motor 2.",
         "Bridging is a matter of wiring; a wrong answer damages the unit.",
     ),
-    not(
+    Assumed::not(
         "sim/src/controller/commands/pins.rs",
         "That an index beyond the model's is refused.",
         "A unit that takes one may write where nothing can be put back.",
     ),
-    asked("sim/src/controller/commands/report.rs", &["tick"]),
-    not(
+    Assumed::asked("sim/src/controller/commands/report.rs", &["tick"]),
+    Assumed::not(
         "sim/src/controller/commands/unit.rs",
         "That a wrong address and a restore leave the address.",
         "The unit may be lost from the line.",
     ),
-    not(
+    Assumed::not(
         "sim/src/controller/control/mod.rs",
         "What the control pins, homing, the R/C and analog inputs and the battery cut-off of a RoboClaw do in detail.",
         PINS,
     ),
-    not(
+    Assumed::not(
         "sim/src/controller/control/word.rs",
         "That an MCP's configuration word tells its TTL UART1.",
         "An MCP has other commands for what stands in it, and a write may end the connection.",
     ),
-    not(
+    Assumed::not(
         "sim/src/controller/firmware.rs",
         "That a board of one channel acknowledges commands for motor 2.",
         "A command for a motor is no question.",
     ),
-    not("sim/src/controller/inputs.rs", "How voltages and open pins read.", PINS),
-    not("sim/src/controller/loader.rs", "What the loader does, and how long it takes.", FIRMWARE_UPDATE),
-    not(
+    Assumed::not("sim/src/controller/inputs.rs", "How voltages and open pins read.", PINS),
+    Assumed::not(
+        "sim/src/controller/loader.rs",
+        "What the loader does, and how long it takes.",
+        FIRMWARE_UPDATE,
+    ),
+    Assumed::not(
         "sim/src/controller/port.rs",
         "How long a unit waits before it answers.",
         "The line is later than the unit; its share is in the latency of the report.",
     ),
-    not("sim/src/controller/script/i2c.rs", "What I2CERROR says.", SCRIPT),
-    not(
+    Assumed::not("sim/src/controller/script/i2c.rs", "What I2CERROR says.", SCRIPT),
+    Assumed::not(
         "sim/src/controller/script/memory.rs",
         "Times and size of the script memory, and its status byte.",
         "It overwrites the stored script.",
     ),
-    not("sim/src/controller/script/motion.rs", "That scripts act at all priority levels.", SCRIPT),
-    not("sim/src/controller/script/registers/motor.rs", "That MOTOR registers are raw.", SCRIPT),
-    not(
+    Assumed::not("sim/src/controller/script/motion.rs", "That scripts act at all priority levels.", SCRIPT),
+    Assumed::not("sim/src/controller/script/registers/motor.rs", "That MOTOR registers are raw.", SCRIPT),
+    Assumed::not(
         "sim/src/controller/script/registers/stream.rs",
         "That a stream's time-out of 0 never runs out.",
         SCRIPT,
     ),
-    not(
+    Assumed::not(
         "sim/src/controller/script/registers/system.rs",
         "Which priority level counts without an input.",
         SCRIPT,
     ),
-    not("sim/src/controller/script/run.rs", "How fast scripts run.", SCRIPT),
-    not("sim/src/controller/script/sending.rs", "How much a port holds back.", SCRIPT),
-    not(
+    Assumed::not("sim/src/controller/script/run.rs", "How fast scripts run.", SCRIPT),
+    Assumed::not("sim/src/controller/script/sending.rs", "How much a port holds back.", SCRIPT),
+    Assumed::not(
         "sim/src/controller/script/state.rs",
         "What starting a running script does, and stopping one.",
         SCRIPT,
     ),
-    not("sim/src/controller/script/streams.rs", "Which UART the TTL stream is.", SCRIPT),
-    not(
+    Assumed::not("sim/src/controller/script/streams.rs", "Which UART the TTL stream is.", SCRIPT),
+    Assumed::not(
         "sim/src/controller/unit.rs",
         "At which voltage the logic gives up.",
         "It takes a supply that is lowered.",
     ),
-    not("sim/src/controller/watch.rs", "How outputs and error limits let go.", MACHINE),
-    not("sim/src/motion/channel/advance.rs", "When a move counts as ended.", LONG_MOVES),
-    not("sim/src/motion/channel/mod.rs", "When a speed error is looked at.", MACHINE),
-    not("sim/src/motion/channel/mode.rs", "That distances are measured in counts.", LONG_MOVES),
-    not(
+    Assumed::not("sim/src/controller/watch.rs", "How outputs and error limits let go.", MACHINE),
+    Assumed::not("sim/src/motion/channel/advance.rs", "When a move counts as ended.", LONG_MOVES),
+    Assumed::not("sim/src/motion/channel/mod.rs", "When a speed error is looked at.", MACHINE),
+    Assumed::not("sim/src/motion/channel/mode.rs", "That distances are measured in counts.", LONG_MOVES),
+    Assumed::not(
         "sim/src/motion/command.rs",
         "What buffer bytes, relay amplitudes and reverse actions mean.",
         LONG_MOVES,
     ),
-    asked("sim/src/motion/law.rs", &["feed_forward", "loop_rate", "position_scale", "speed_step"]),
-    not("sim/src/motion/law.rs", "Filters, derivative, wind-up, delay and the forms of moves.", LONG_MOVES),
-    not("sim/src/motion/mixing.rs", "Which motor is the left one.", LOOKING),
-    not("sim/src/motion/mod.rs", "What a command does beyond its words.", LONG_MOVES),
-    not("sim/src/motion/output.rs", "How the current is limited.", MACHINE),
-    not("sim/src/motion/pid.rs", "What the dead zone does.", LONG_MOVES),
-    not(
+    Assumed::asked("sim/src/motion/law.rs", &["feed_forward", "loop_rate", "position_scale", "speed_step"]),
+    Assumed::not(
+        "sim/src/motion/law.rs",
+        "Filters, derivative, wind-up, delay and the forms of moves.",
+        LONG_MOVES,
+    ),
+    Assumed::not("sim/src/motion/mixing.rs", "Which motor is the left one.", LOOKING),
+    Assumed::not("sim/src/motion/mod.rs", "What a command does beyond its words.", LONG_MOVES),
+    Assumed::not("sim/src/motion/output.rs", "How the current is limited.", MACHINE),
+    Assumed::not("sim/src/motion/pid.rs", "What the dead zone does.", LONG_MOVES),
+    Assumed::not(
         "sim/src/motion/relay.rs",
         "How the relay tests 84 to 87 go.",
         "They can hang where the wiring is wrong (MCP manual 2.4.5).",
     ),
-    not(
+    Assumed::not(
         "sim/src/motion/settings.rs",
         "The bound of the position integral, defaults of ramps and of the idle bridge.",
         LONG_MOVES,
     ),
-    not("sim/src/priority.rs", "How priority levels give way.", PINS),
-    not(
+    Assumed::not("sim/src/priority.rs", "How priority levels give way.", PINS),
+    Assumed::not(
         "sim/src/settings/defaults.rs",
         "Which encoder pin a unit leaves the factory with.",
         "A used unit no longer tells.",
     ),
-    not("sim/src/settings/eeprom.rs", "Size and time of the EEPROM's rows.", EEPROM),
-    not("sim/src/signals/mod.rs", "How often inputs are read, and their time-outs.", PINS),
-    not("sim/src/signals/shape.rs", "The curve between an input and its command.", PINS),
-    not(
+    Assumed::not("sim/src/settings/eeprom.rs", "Size and time of the EEPROM's rows.", EEPROM),
+    Assumed::not("sim/src/signals/mod.rs", "How often inputs are read, and their time-outs.", PINS),
+    Assumed::not("sim/src/signals/shape.rs", "The curve between an input and its command.", PINS),
+    Assumed::not(
         "sim/src/supervision/battery.rs",
         "The voltages of a cell, and what limits detection sets.",
         "It takes batteries of several kinds.",
     ),
-    not("sim/src/supervision/leds.rs", "How long the LEDs light.", LOOKING),
-    not(
+    Assumed::not("sim/src/supervision/leds.rs", "How long the LEDs light.", LOOKING),
+    Assumed::not(
         "sim/src/supervision/limits.rs",
         "Which limits warn and which are errors.",
         "It takes voltages and temperatures beyond them.",
     ),
-    not("wire/src/canopen/eds.rs", "Which vendor, product and revision a node calls itself.", BUS),
-    not("wire/src/canopen/objects.rs", "How commands lie in objects.", BUS),
-    not("wire/src/codes.rs", "How actions and encoder pins are numbered.", PINS),
-    not(
+    Assumed::not("wire/src/canopen/eds.rs", "Which vendor, product and revision a node calls itself.", BUS),
+    Assumed::not("wire/src/canopen/objects.rs", "How commands lie in objects.", BUS),
+    Assumed::not("wire/src/codes.rs", "How actions and encoder pins are numbered.", PINS),
+    Assumed::not(
         "wire/src/models.rs",
         "Ratings that no manual lists, and which UART stops an encoder.",
         "Ratings cannot be tried, and the UARTs take wiring.",
     ),
-    asked(
+    Assumed::asked(
         "wire/src/packet_serial/framer.rs",
         &["doubled_address", "appended_crc", "longer_payload", "shorter_payload"],
     ),
-    not("wire/src/packet_serial/led.rs", "How the LEDs flash.", LOOKING),
-    asked("wire/src/packet_serial/scale.rs", &["position_scale"]),
-    asked("wire/src/packet_serial/table/autotune.rs", &["guessed_reads"]),
-    asked("wire/src/packet_serial/table/can.rs", &["can_errors", "can_dictionary"]),
-    not(
+    Assumed::not("wire/src/packet_serial/led.rs", "How the LEDs flash.", LOOKING),
+    Assumed::asked("wire/src/packet_serial/scale.rs", &["position_scale"]),
+    Assumed::asked("wire/src/packet_serial/table/autotune.rs", &["guessed_reads"]),
+    Assumed::asked("wire/src/packet_serial/table/can.rs", &["can_errors", "can_dictionary"]),
+    Assumed::not(
         "wire/src/packet_serial/table/config.rs",
         "What 100 and 101 do in generation 1 (\"factory QPPS test\").",
         "They may run the motors at full speed.",
     ),
-    asked("wire/src/packet_serial/table/legacy.rs", &["legacy_acknowledgement"]),
-    not(
+    Assumed::asked("wire/src/packet_serial/table/legacy.rs", &["legacy_acknowledgement"]),
+    Assumed::not(
         "wire/src/roboclaw.rs",
         "That D1 and D2 are the outputs CTRL1 and CTRL2, and that bit 3 inverts an input.",
         PINS,
     ),
-    not("wire/src/script_image.rs", "What fills the last block of a script.", OURS),
+    Assumed::not("wire/src/script_image.rs", "What fills the last block of a script.", OURS),
 ];
 
 /// What is not asked, and why.
 #[must_use]
 pub fn not_askable() -> Vec<NotAskable> {
-    let assumed = ASSUMED.iter().filter_map(|row| match row.standing {
-        Standing::Asked(_) => None,
-        Standing::Not(why) => Some(NotAskable { what: row.what, why }),
-    });
-    OPEN.into_iter().chain(assumed).collect()
+    OPEN.into_iter().chain(not_asked(ASSUMED)).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use brushwork_family::examine::Standing;
 
     #[test]
     fn what_is_said_to_be_asked_is_a_question_and_every_question_and_step_has_its_own_key() {
