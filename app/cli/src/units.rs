@@ -278,6 +278,7 @@ fn connect_of(command: &mut Command) -> Option<&mut ConnectArgs> {
         Command::Status(args) if !args.watch => Some(&mut args.connect),
         Command::Examine(args) => Some(&mut args.connect),
         Command::Settings(args) => args.action.connect_mut(),
+        Command::Tune(args) => args.command.run_mut().map(|run| &mut run.connect),
         // These go to one, have no controller, or have their own way with several.
         Command::Status(_)
         | Command::List(_)
@@ -288,8 +289,7 @@ fn connect_of(command: &mut Command) -> Option<&mut ConnectArgs> {
         | Command::Sim(_)
         | Command::Terminal(_)
         | Command::Protocol(_)
-        | Command::Monitor(_)
-        | Command::Tune(_) => None,
+        | Command::Monitor(_) => None,
     }
 }
 
@@ -303,6 +303,9 @@ fn how_of(command: &mut Command) -> Option<&mut WriteHow> {
 fn files_of(command: &mut Command) -> Vec<&mut PathBuf> {
     if let Command::Examine(args) = command {
         return args.json.iter_mut().chain(&mut args.output).collect();
+    }
+    if let Command::Tune(args) = command {
+        return args.command.run_mut().and_then(|run| run.report.as_mut()).into_iter().collect();
     }
     let Command::Settings(args) = command else { return Vec::new() };
     if let SettingsAction::Export(args) = &mut args.action { vec![&mut args.file] } else { Vec::new() }

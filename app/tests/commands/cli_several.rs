@@ -100,13 +100,25 @@ fn what_goes_to_one_controller_is_refused_for_several() {
     let file = name(line.folder.path()).to_owned();
     for words in [
         &["settings", "raw", "motor1.encoder.pin=1"][..],
-        &["tune", "--report", &file],
         &["firmware", "info"],
         &["firmware", "update", &file],
     ] {
         let run = brushwork(&line, &[words, &["--address", "0x80-0x81"]].concat());
         assert_eq!(run.code, USAGE, "{run:#?}");
     }
+}
+
+/// Boards as they are delivered have no serial time-out, so that none is armed: what matters here is that each is asked by itself.
+#[test]
+fn a_tuning_run_goes_to_one_board_after_the_other_and_each_says_what_became_of_it() {
+    let line = rover("0x80-0x81");
+    let report = line.folder.path().join("rover.json");
+    let words = ["tune", "velocity", "--address", "0x80-0x82", "--report", name(&report), "--json"];
+    let run = brushwork(&line, &words).ended_with(NO_LINK);
+    let json = run.explains("Not done to the end on 0x80 on").explains("0x82 on").json();
+    assert_eq!(each(&json, "/exit_code"), [REFUSED, REFUSED, NO_LINK]);
+    assert_eq!(each(&json, "/address"), [128, 129, 130]);
+    assert!(!report.exists(), "no board has the name of all");
 }
 
 #[test]

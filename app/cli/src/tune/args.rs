@@ -49,6 +49,17 @@ pub enum TuneCommand {
     },
 }
 
+impl TuneCommand {
+    /// The run, where it is one and no replay.
+    pub fn run_mut(&mut self) -> Option<&mut RunArgs> {
+        match self {
+            Self::Velocity(args) => Some(&mut args.run),
+            Self::Position(args) => Some(&mut args.run),
+            Self::Replay { .. } => None,
+        }
+    }
+}
+
 /// A run of the velocity loop.
 #[derive(Debug, Args)]
 pub struct VelocityArgs {

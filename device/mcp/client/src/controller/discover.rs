@@ -112,8 +112,33 @@ fn scan(line: &mut Line<'_>, addresses: Addresses) -> Result<Vec<(Address, Strin
             break;
         }
     }
+    if matches!(addresses, Addresses::These(_)) && !answers.is_empty() {
+        again(line, &candidates, &mut answers)?;
+    }
     line.set_retries(RETRIES);
     Ok(answers)
+}
+
+/// Asks those that somebody has named and that were silent once more, with the patience of a late line: one reply that came late is no missing
+/// unit.
+fn again(
+    line: &mut Line<'_>,
+    candidates: &[Address],
+    answers: &mut Vec<(Address, String)>,
+) -> Result<(), ExchangeError> {
+    let silent = |address: &&Address| !answers.iter().any(|(known, _)| known == *address);
+    let silent: Vec<Address> = candidates.iter().filter(silent).copied().collect();
+    if silent.is_empty() {
+        return Ok(());
+    }
+    let patience = PATIENCE[1];
+    let (exchange, watch) = line.parts();
+    exchange.drain(patience, watch)?;
+    line.exchange().set_patience(patience);
+    line.set_retries(0);
+    answers.extend(ask_each(line, &silent)?);
+    answers.sort_by_key(|(address, _)| *address);
+    Ok(())
 }
 
 fn ask_each(line: &mut Line<'_>, candidates: &[Address]) -> Result<Vec<(Address, String)>, ExchangeError> {
