@@ -10,7 +10,7 @@ mod mcp;
 mod motion_mind;
 
 use brushwork_cli::family::Family as Commands;
-use brushwork_core::guardian;
+use brushwork_core::{guardian, panics};
 use brushwork_family::{Examiner, Simulator, examine, simulator};
 use brushwork_gui::run::{WindowOptions, run as open_window};
 use brushwork_gui::screens::face::Window;
@@ -102,6 +102,7 @@ pub fn run() -> ExitCode {
     if words.next().is_some_and(|word| word == guardian::COMMAND) {
         return brushwork_cli::guardian::run(words);
     }
+    panics::install();
     if let Ok(program) = std::env::current_exe() {
         guardian::install(program);
     }

@@ -11,6 +11,7 @@ pub mod keep;
 pub mod known_file;
 pub mod messages;
 pub mod motion;
+pub mod panics;
 pub mod recording;
 pub mod session;
 pub mod settings;

@@ -26,7 +26,10 @@ const SPEED_OVER_S: f64 = 0.02;
 const STYLE: &str = "body{font:15px/1.5 system-ui,sans-serif;max-width:46em;margin:2em auto;padding:0 1em;color:#1a1a1a}\
 h1{font-size:1.5em}h2{font-size:1.15em;margin-top:1.8em}table{border-collapse:collapse;margin:.6em 0}\
 td,th{padding:.2em .9em .2em 0;text-align:left;vertical-align:top}td.n,th.n{text-align:right;font-variant-numeric:tabular-nums}\
-tr{border-bottom:1px solid #ddd}.weak{color:#666}svg{max-width:100%;height:auto}svg text{font:11px system-ui,sans-serif;fill:#444}";
+tr{border-bottom:1px solid #ddd}.weak{color:#666}figure{margin:1em 0}figcaption span{margin-left:1.2em}svg{max-width:100%;height:auto}svg text{font:11px system-ui,sans-serif;fill:#444}";
+
+/// Head of a column of words.
+const WHAT: &str = "what it is";
 
 /// One curve: its name and its points.
 struct Curve {
@@ -156,7 +159,7 @@ fn promised(page: &mut String, report: &Report) {
         format!("{:.1} %", 100.0 * design.noise_duty),
         "from the rounding of counts".into(),
     ]);
-    table(page, "The loop with these gains", &["", "value", "what it is"], &rows);
+    table(page, "The loop with these gains", &["", "value", WHAT], &rows);
     let rules: Vec<[String; 6]> = alternatives(report)
         .iter()
         .map(|found| {
@@ -171,7 +174,7 @@ fn promised(page: &mut String, report: &Report) {
             ]
         })
         .collect();
-    table(page, "Rules on the same model", &["", "P", "I", "Ms", "overshoot", "settling"], &rules);
+    table(page, "Rules on the same model", &["", "P", "I, 1/s", "Ms", "overshoot", "settling"], &rules);
     let replies =
         |of: &[brushwork_tuning::whatif::Reply]| of.iter().map(|reply| (reply.t, reply.value)).collect();
     let up = if design.gains.position.is_some() { "counts" } else { "counts/s" };
@@ -215,7 +218,7 @@ fn promised(page: &mut String, report: &Report) {
             "Hz",
             "deg",
             true,
-            vec![Curve { name: "phase", points: over_hz(&LoopPoint::phase_deg) }],
+            vec![Curve { name: "phase", points: unwrapped(over_hz(&LoopPoint::phase_deg)) }],
         ),
     );
     svg(
@@ -233,12 +236,26 @@ fn promised(page: &mut String, report: &Report) {
         .map(|point| point.open)
         .filter(|(re, im)| re.abs() < 4.0 && im.abs() < 4.0)
         .collect();
+    // A mark for the point -1, round the loop's curve.
     let critical = vec![(-1.03, 0.0), (-0.97, 0.0), (-1.0, 0.0), (-1.0, -0.06), (-1.0, 0.06)];
-    let curves = vec![Curve { name: "open loop", points: nyquist }, Curve { name: "-1", points: critical }];
+    let curves =
+        vec![Curve { name: "open loop", points: nyquist }, Curve { name: "point -1", points: critical }];
     svg(
         page,
         &Plot { limits: Some((-3.0, 1.0)), ..plot("Nyquist", "real part", "imaginary part", false, curves) },
     );
+}
+
+/// Degrees without the jumps of a whole turn.
+fn unwrapped(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    let mut last: Option<f64> = None;
+    for (_, degrees) in &mut points {
+        if let Some(last) = last {
+            *degrees -= 360.0 * ((*degrees - last) / 360.0).round();
+        }
+        last = degrees.is_finite().then_some(*degrees).or(last);
+    }
+    points
 }
 
 /// The run as it was measured.
@@ -262,7 +279,11 @@ fn table<R: AsRef<[String]>>(page: &mut String, title: &str, heads: &[&str], row
         return;
     }
     let _ = write!(page, "<h2>{title}</h2>\n<table><tr>");
-    let class = |column: usize| if column == 0 { "" } else { " class=\"n\"" };
+    // Words stand at the left, figures at the right.
+    let class = |column: usize| match heads.get(column) {
+        Some(&("" | WHAT)) | None => "",
+        Some(_) => " class=\"n\"",
+    };
     for (column, head) in heads.iter().enumerate() {
         let _ = write!(page, "<th{}>{}</th>", class(column), escaped(head));
     }
@@ -309,8 +330,9 @@ fn svg(page: &mut String, plot: &Plot) {
     };
     let _ = write!(
         page,
-        "<figure><figcaption>{}</figcaption><svg viewBox=\"0 -6 {} {}\" role=\"img\" aria-label=\"{}\">",
+        "<figure><figcaption>{}{}</figcaption><svg viewBox=\"0 -6 {} {}\" role=\"img\" aria-label=\"{}\">",
         plot.title,
+        captions(plot),
         SIZE.0,
         SIZE.1 + 12.0,
         plot.title
@@ -339,11 +361,10 @@ fn svg(page: &mut String, plot: &Plot) {
     }
     let _ = write!(
         page,
-        "<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text><text x=\"4\" y=\"6\">{}</text>",
+        "<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>",
         SIZE.0,
         SIZE.1 + 2.0,
-        plot.across,
-        plot.up
+        plot.across
     );
     for (number, curve) in plot.curves.iter().enumerate() {
         let colour = COLOURS[number % COLOURS.len()];
@@ -361,12 +382,17 @@ fn svg(page: &mut String, plot: &Plot) {
             page,
             "<polyline fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.5\" points=\"{path}\"/>"
         );
-        if plot.curves.len() > 1 {
-            let x = MARGIN.0 + 10.0 + 180.0 * number as f64;
-            let _ = write!(page, "<text x=\"{x}\" y=\"12\" style=\"fill:{colour}\">{}</text>", curve.name);
-        }
     }
     page.push_str("</svg></figure>\n");
+}
+
+/// What stands beside a plot's title: its unit, and the names of several curves in their colours.
+fn captions(plot: &Plot) -> String {
+    let mut text = if plot.up.is_empty() { String::new() } else { format!(", {}", plot.up) };
+    for (curve, colour) in plot.curves.iter().zip(COLOURS).filter(|_| plot.curves.len() > 1) {
+        let _ = write!(text, "<span style=\"color:{colour}\">&#9644; {}</span>", curve.name);
+    }
+    text
 }
 
 /// Round values within a range.
@@ -403,6 +429,14 @@ mod tests {
         assert_eq!(marks((0.0, 1.0)), [0.0, 0.2, 0.4, 0.6, 0.8, 1.0].map(|x: f64| (x / 0.2).round() * 0.2));
         assert!(marks((-37.0, 12.0)).iter().all(|mark| mark % 10.0 == 0.0));
         assert_eq!([figure(0.25), figure(1200.0), figure(12.5), figure(0.0)], ["0.25", "1200", "12.5", "0"]);
+    }
+
+    #[test]
+    fn a_phase_that_goes_round_is_drawn_without_a_jump() {
+        let wrapped =
+            vec![(1.0, -90.0), (2.0, -170.0), (3.0, 170.0), (4.0, 80.0), (5.0, -10.0), (6.0, f64::NAN)];
+        let degrees: Vec<f64> = unwrapped(wrapped).into_iter().take(5).map(|(_, degrees)| degrees).collect();
+        assert_eq!(degrees, [-90.0, -170.0, -190.0, -280.0, -370.0]);
     }
 
     #[test]
