@@ -8,6 +8,7 @@
 //! itself, so that a busy computer blames nobody; memory is what was taken beyond what was held before.
 #![expect(clippy::print_stdout, reason = "the table is what the benchmark is for")]
 
+mod brought;
 mod mutate;
 mod targets;
 

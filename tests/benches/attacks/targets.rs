@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64};
 use std::time::Duration;
 
+use crate::brought;
 use brushwork_canopen::adapter::{Decoder, Form};
 use brushwork_canopen::sdo::{Abort, Dictionary, Server, Transfer};
 use brushwork_core::keep::{Store, UnitId};
@@ -309,6 +310,56 @@ pub static TARGETS: &[Target] = &[
         samples: lines_of_mind,
         words: &["R01 ", "1D 01 ", "0x", " "],
         reader: |_| Box::new(|bytes, _| typed(bytes)),
+    },
+    Target {
+        name: "SuprMotr, lines",
+        samples: brought::lines_of_suprmotr,
+        words: &["MA100\r", "TS\r", "MD1,", "\u{1}0", "!", "'", "\u{8}", ",", "-", "$FF"],
+        reader: |_| Box::new(|bytes, _| brought::suprmotr_lines(bytes)),
+    },
+    Target {
+        name: "SuprMotr, reports",
+        samples: brought::reports_of_suprmotr,
+        words: &["0S:", "P:+0000012345", "\r\n", "\u{3}", "C:", " FFFF"],
+        reader: |_| Box::new(|bytes, _| brought::suprmotr_reports(bytes)),
+    },
+    Target {
+        name: "SuprMotr macros",
+        samples: brought::macros,
+        words: &["macro home = 1\n", "end\n", "MA ", "const A = 1\n", "# ", "JP ", ", "],
+        reader: |_| Box::new(|bytes, _| brought::suprmotr_macros(bytes)),
+    },
+    Target {
+        name: "MotorVator, lines",
+        samples: || {
+            vec![b"I001002003\r".to_vec(), b"G\rH\r".to_vec(), b"S:001002003004005006007008\r".to_vec()]
+        },
+        words: &["I", "255", "256", "000", "G\r", "H\r"],
+        reader: |_| Box::new(|bytes, _| brought::motorvator_lines(bytes)),
+    },
+    Target {
+        name: "bytes in words",
+        samples: || vec![b"80 15 0A 5 # read\n\n0x80,0x5A\n".to_vec(), b"1D 01 07 25\n".to_vec()],
+        words: &["80 ", "0x", "5A", "\n", "# ", ",", "\t"],
+        reader: |_| Box::new(|bytes, _| brought::bytes_in_words(bytes)),
+    },
+    Target {
+        name: "composed command",
+        samples: || vec![b"0\n-1\n0x80\n".to_vec(), b"1,2,3\nname\n".to_vec()],
+        words: &["0x", "-", "4294967296", "1e9", ",", "\n", "\"", "FF "],
+        reader: |_| Box::new(|bytes, _| brought::composed(bytes)),
+    },
+    Target {
+        name: "dropped file",
+        samples: brought::files_of_all_kinds,
+        words: JSON,
+        reader: |_| Box::new(|_, path| brought::dropped(path)),
+    },
+    Target {
+        name: "pasted text",
+        samples: scripts,
+        words: MCL,
+        reader: |_| Box::new(|bytes, _| brought::pasted(bytes)),
     },
 ];
 

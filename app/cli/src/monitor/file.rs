@@ -29,6 +29,16 @@ pub fn run(args: &MonitorArgs, path: &Path, out: &mut Output) -> Result<(), Exit
     Ok(())
 }
 
+/// What the requests of packet serial in a text of bytes mean, a sentence each.
+///
+/// # Errors
+/// Something is no byte; a clause names it with its place.
+pub fn meanings(text: &str) -> Result<Vec<String>, String> {
+    let lines = parse(text).map_err(|error| error.to_string())?;
+    let records = decode(&mut crate::mcp::decoder::Decoder::new(None), &lines);
+    Ok(records.into_iter().map(|record| record.text).collect())
+}
+
 fn is_standard_input(path: &Path) -> bool {
     path == Path::new("-")
 }
@@ -114,8 +124,7 @@ mod tests {
     use super::*;
 
     fn reported(text: &str) -> Vec<String> {
-        let mut decoder = crate::mcp::decoder::Decoder::new(None);
-        decode(&mut decoder, &parse(text).unwrap()).into_iter().map(|record| record.text).collect()
+        meanings(text).unwrap()
     }
 
     fn error(text: &str) -> String {

@@ -12,6 +12,8 @@ mod own;
 pub mod record;
 mod tap;
 
+pub use file::meanings;
+
 use super::{Exit, Interrupt, Output};
 use args::MonitorArgs;
 
