@@ -56,7 +56,6 @@ pub use brushwork_core::addresses::AddressList;
 pub use client::Client;
 pub use family::{Family, Page, Simulated};
 pub use interrupt::Interrupt;
-pub use monitor::meanings;
 pub use new_file::{NewFile, Replace};
 pub use output::{Output, OutputError, say};
 pub use readings::Readings;

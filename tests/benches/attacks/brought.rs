@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use brushwork_cli::meanings;
+use brushwork_cli::mcp::decoder::meanings;
 use brushwork_core::known_file::recognise;
 use brushwork_gui::mcl::doc_id::DocId;
 use brushwork_gui::mcl::document::Document;
@@ -82,7 +82,7 @@ pub fn motorvator_lines(bytes: &[u8]) {
     for line in bytes.split(|byte| *byte == b'\r') {
         drop((parse_line_of_board(line), HostAnswer::parse(line)));
         if let Some(Order::Data(frame)) = Order::of_line(line) {
-            drop(HostOrder::parse(&frame));
+            let _ = HostOrder::parse(&frame);
         }
     }
 }
@@ -103,7 +103,7 @@ pub fn composed(bytes: &[u8]) {
             typed.clone_into(argument);
         }
         composer.search = text.lines().next().unwrap_or_default().to_owned();
-        drop(composer.found(generation).count());
+        let _ = composer.found(generation).count();
         drop(composer.prepare(Address::DEFAULT, generation, Permit::default()));
     }
 }

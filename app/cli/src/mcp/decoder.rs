@@ -12,6 +12,7 @@ use brushwork_mcp_wire::packet_serial::{
     Request, RequestFramer, describe_event, describe_reply, number, parse_reply, scale,
 };
 
+use crate::monitor;
 use crate::monitor::awaited::{Awaited, take};
 use crate::monitor::follower::{Follower, Stop};
 use crate::monitor::record::{Direction, Record};
@@ -311,6 +312,14 @@ fn stop_of(address: Address, generation: Generation) -> Option<Stop> {
     let request = Request::new(address, number::DUTY_ACCEL_BOTH, &DUTY_ZERO);
     let writes = vec![request.encode(generation).ok()?];
     Some(Stop { who: format!("both motors of {address}"), writes, acknowledge: &[ACK] })
+}
+
+/// What the requests of packet serial in a text of bytes mean, a sentence each.
+///
+/// # Errors
+/// Something is no byte; a clause names it with its place.
+pub fn meanings(text: &str) -> Result<Vec<String>, String> {
+    monitor::meanings(text, &mut Decoder::new(None))
 }
 
 #[cfg(test)]

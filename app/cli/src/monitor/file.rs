@@ -29,14 +29,13 @@ pub fn run(args: &MonitorArgs, path: &Path, out: &mut Output) -> Result<(), Exit
     Ok(())
 }
 
-/// What the requests of packet serial in a text of bytes mean, a sentence each.
+/// What the requests in a text of bytes mean, a sentence each.
 ///
 /// # Errors
 /// Something is no byte; a clause names it with its place.
-pub fn meanings(text: &str) -> Result<Vec<String>, String> {
+pub fn meanings(text: &str, decoder: &mut dyn Follower) -> Result<Vec<String>, String> {
     let lines = parse(text).map_err(|error| error.to_string())?;
-    let records = decode(&mut crate::mcp::decoder::Decoder::new(None), &lines);
-    Ok(records.into_iter().map(|record| record.text).collect())
+    Ok(decode(decoder, &lines).into_iter().map(|record| record.text).collect())
 }
 
 fn is_standard_input(path: &Path) -> bool {
@@ -124,7 +123,7 @@ mod tests {
     use super::*;
 
     fn reported(text: &str) -> Vec<String> {
-        meanings(text).unwrap()
+        meanings(text, &mut crate::mcp::decoder::Decoder::new(None)).unwrap()
     }
 
     fn error(text: &str) -> String {
