@@ -266,6 +266,8 @@ const TEST_ARROWS: [(&str, &[&str]); 4] = [
             "brushwork-motion-mind-sim",
             "brushwork-motorvator",
             "brushwork-motorvator-sim",
+            "brushwork-suprmotr",
+            "brushwork-suprmotr-sim",
         ],
     ),
     ("brushwork-packaging", &["brushwork-child"]),

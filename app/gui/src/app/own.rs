@@ -50,10 +50,8 @@ impl App {
         let (screen, front) = (self.model.screen, &mut self.model.front);
         let is_free = front.is_connected() && !front.is_guided() && front.settings.running().is_none();
         let wants_read = is_free && front.family().shows_registers(screen);
-        let Some(request) = wants_read.then(|| front.own.iter_mut().find_map(|own| own.read(now))).flatten()
-        else {
-            return;
-        };
+        let Some(unit) = front.link.identity().filter(|_| wants_read).cloned() else { return };
+        let Some(request) = front.own.iter_mut().find_map(|own| own.read(&unit, now)) else { return };
         // A link that is busy is asked again later; nobody has to be told.
         if self.device().is_none_or(|device| device.request(request).is_err()) {
             self.model.front.own.iter_mut().for_each(|own| own.not_read());

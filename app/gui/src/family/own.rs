@@ -5,7 +5,7 @@ use std::fmt::Debug;
 use std::path::Path;
 use std::time::Duration;
 
-use brushwork_link::{Event, Failure, Message, Request, Sample};
+use brushwork_link::{Event, Failure, Identity, Message, Request, Sample};
 
 use super::known::Known;
 
@@ -38,8 +38,8 @@ pub trait Own: Any + Debug {
         None
     }
 
-    /// What the open screen needs read besides the signals, when it is time for it.
-    fn read(&mut self, _now: Duration) -> Option<Request> {
+    /// What the open screen needs read of that unit besides the signals, when it is time for it. Units of other families concern it not.
+    fn read(&mut self, _unit: &Identity, _now: Duration) -> Option<Request> {
         None
     }
 

@@ -33,6 +33,7 @@ mod shell;
 mod soak;
 mod status;
 mod support;
+mod suprmotr;
 mod traffic;
 mod tuning;
 mod tuning_by_hand;

@@ -1,6 +1,7 @@
 //! What a Motion Mind 3 has of its own in the window: what its mode lets this program drive, and the state of its screens.
 
-use brushwork_link::{Event, Request, Sample, SettingValue};
+use brushwork_link::{Event, Identity, Request, Sample, SettingValue};
+use brushwork_motion_mind_client::MotionMindFacts;
 use brushwork_motion_mind_wire::register_named;
 use std::time::Duration;
 
@@ -91,7 +92,8 @@ impl Own for MotionMindConnection {
         self.steps.give_up();
     }
 
-    fn read(&mut self, now: Duration) -> Option<Request> {
+    fn read(&mut self, unit: &Identity, now: Duration) -> Option<Request> {
+        MotionMindFacts::of(unit)?;
         self.live.read(now)
     }
 

@@ -48,13 +48,14 @@ impl Family for SuprMotr {
     }
 
     fn screens(&self, _identity: Option<&Identity>, _known: Known<'_>) -> Vec<Screen> {
-        vec![Screen::DeviceStatus, Screen::GeneralSettings, Screen::Position]
+        vec![Screen::DeviceStatus, Screen::GeneralSettings, Screen::Position, Screen::Inputs]
     }
 
     #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn title(&self, screen: Screen) -> &'static str {
         match screen {
             Screen::Position => "Motion",
+            Screen::Inputs => "Inputs and Outputs",
             other => other.title(),
         }
     }
@@ -133,6 +134,10 @@ impl Family for SuprMotr {
 
     fn to_send(&self, scope: ArmScope, sliders: Sliders) -> Option<Drive> {
         (scope == ArmScope::Position).then(|| to_send(sliders.position.setpoints)).flatten()
+    }
+
+    fn shows_registers(&self, screen: Screen) -> bool {
+        screen == Screen::Inputs
     }
 
     fn path(&self) -> &'static [PathStep] {

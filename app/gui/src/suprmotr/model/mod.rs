@@ -1,6 +1,8 @@
-//! What a SuprMotr has of its own in the window: how far its slider goes, and how far a step.
+//! What a SuprMotr has of its own in the window: how far its slider goes, how far a step, and its inputs and outputs.
 
-use brushwork_link::device::{Drive, DriveCommand};
+use std::time::Duration;
+
+use brushwork_link::device::{Drive, DriveCommand, Event, Identity, Request};
 use brushwork_suprmotr_wire::FURTHEST_COUNTS;
 use brushwork_values::Motor;
 
@@ -8,7 +10,10 @@ use crate::family::Own;
 use crate::model::Connection;
 use crate::model::setpoints::Setpoints;
 
+pub mod channels;
 pub mod family;
+
+use channels::Channels;
 
 /// The state of its screens.
 #[derive(Debug)]
@@ -17,15 +22,41 @@ pub struct SuprMotrConnection {
     pub span_counts: f64,
     /// What one press of a step button moves, counts.
     pub step_counts: f64,
+    /// Its inputs and outputs.
+    pub channels: Channels,
 }
 
 impl Default for SuprMotrConnection {
     fn default() -> Self {
-        Self { span_counts: 25_000.0, step_counts: 500.0 }
+        Self { span_counts: 25_000.0, step_counts: 500.0, channels: Channels::default() }
     }
 }
 
-impl Own for SuprMotrConnection {}
+impl Own for SuprMotrConnection {
+    fn take(&mut self, event: &Event) -> bool {
+        self.channels.take(event)
+    }
+
+    fn read(&mut self, identity: &Identity, now: Duration) -> Option<Request> {
+        self.channels.read(identity, now)
+    }
+
+    fn not_read(&mut self) {
+        self.channels.not_sent();
+    }
+
+    fn not_transacted(&mut self) {
+        self.channels.not_sent();
+    }
+
+    fn forget_unit(&mut self) {
+        self.channels.forget();
+    }
+
+    fn link_ended(&mut self) {
+        self.channels.forget();
+    }
+}
 
 impl Connection {
     /// What is kept of a SuprMotr.

@@ -1,4 +1,6 @@
-//! The screens of a SuprMotr: moves to a place, by slider and by steps; all else is shared.
+//! The screens of a SuprMotr: moves to a place, by slider and by steps, inputs and outputs; all else is shared.
+
+mod channels;
 
 use brushwork_link::device::{ArmScope, Channel};
 use brushwork_values::Motor;
@@ -14,11 +16,18 @@ use crate::widgets::{Numeric, Setpoint};
 
 impl Face for SuprMotr {
     fn screen_ui(&self, ui: &mut Ui, model: &mut Model, commands: &mut Commands) -> bool {
-        let is_own = model.screen == Screen::Position;
-        if is_own {
-            motion_ui(ui, model, commands);
+        match model.screen {
+            Screen::Position => motion_ui(ui, model, commands),
+            Screen::Inputs => channels::channels_ui(ui, model, commands),
+            Screen::DeviceStatus
+            | Screen::GeneralSettings
+            | Screen::Pwm
+            | Screen::Velocity
+            | Screen::MclEditor
+            | Screen::Motion
+            | Screen::Terminal => return false,
         }
-        is_own
+        true
     }
 }
 
