@@ -66,10 +66,12 @@ pub fn answers_at(unit: &Identity, number: u8) -> bool {
     unit.address == number || unit.also_answers.contains(&number)
 }
 
-/// Whether the replies of a line are those of one unit: two spoil each other's bytes, or one of them speaks when the other has ended.
+/// Whether the replies of a line are those of one unit: two spoil each other's bytes, or one of them speaks when the other has ended. Replies that
+/// came late, over a slow line or on a busy computer, are no sign of a second unit.
 #[must_use]
 pub fn is_sound(statistics: &LinkStatistics) -> bool {
-    (statistics.crc_errors + statistics.stray_bytes) * WRONG_OF <= statistics.transactions
+    let unasked = statistics.stray_bytes.saturating_sub(statistics.late_bytes);
+    (statistics.crc_errors + unasked) * WRONG_OF <= statistics.transactions
 }
 
 /// The setting that gives a unit the address, by whichever of its family's settings the unit has. `None` where it cannot have it.
@@ -98,4 +100,23 @@ pub fn held_of(ram: &ReadReport, options: WriteOptions, numbers: &[u8]) -> Optio
         !wanted.is_empty() && wanted.iter().all(|(key, value)| ram.image.get(key) == Some(value))
     };
     numbers.iter().copied().find(holds)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_that_nobody_asked_for_are_of_a_second_unit_and_late_ones_are_not() {
+        let figures = |stray_bytes, late_bytes, crc_errors| LinkStatistics {
+            transactions: 100,
+            stray_bytes,
+            late_bytes,
+            crc_errors,
+            ..LinkStatistics::default()
+        };
+        assert!(is_sound(&figures(0, 0, 0)) && is_sound(&figures(40, 40, 0)));
+        assert!(!is_sound(&figures(40, 0, 0)) && !is_sound(&figures(40, 20, 0)));
+        assert!(!is_sound(&figures(40, 40, 3)), "a checksum is no matter of time");
+    }
 }

@@ -347,7 +347,8 @@ impl Exchange {
         if self.unsettled || self.has_late_replies() {
             self.settle(watch)?;
         }
-        self.counters.totals.stray_bytes += self.transport.discard_input()? as u64;
+        let discarded = self.transport.discard_input()?;
+        self.count_strays(discarded, self.clock.now());
         let requested_at = self.clock.now();
         self.unsettled = true;
         self.write(request.bytes)?;
@@ -410,7 +411,7 @@ impl Exchange {
             self.received.extend_from_slice(&buffer[..count]);
             match judge(&self.received) {
                 Judgement::Good(used) => {
-                    self.counters.totals.stray_bytes += self.received.len().saturating_sub(used) as u64;
+                    self.count_strays(self.received.len().saturating_sub(used), now);
                     return Ok(now);
                 }
                 Judgement::More(missing) => deadline = deadline.max(now + self.allowance(request, missing)),
@@ -487,8 +488,15 @@ impl Exchange {
 
     fn stray(&mut self, bytes: &[u8], now: Duration) {
         self.counters.read(bytes.len());
-        self.counters.totals.stray_bytes += bytes.len() as u64;
+        self.count_strays(bytes.len(), now);
         self.trace.record(now, false, bytes);
+    }
+
+    fn count_strays(&mut self, count: usize, now: Duration) {
+        self.counters.totals.stray_bytes += count as u64;
+        if self.given_up.may_come(now) {
+            self.counters.totals.late_bytes += count as u64;
+        }
     }
 
     /// Waits for more bytes until `until`, a slice at the most, and keeps them behind those at hand.

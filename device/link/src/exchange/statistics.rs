@@ -34,6 +34,9 @@ pub struct LinkStatistics {
     pub crc_errors: u64,
     /// Bytes that answered nothing: late replies and noise.
     pub stray_bytes: u64,
+    /// Those of them that came while the reply to a request that was given up could still come.
+    #[serde(skip)]
+    pub late_bytes: u64,
     /// Samples thrown away because nobody took them.
     pub dropped_samples: u64,
 }
