@@ -57,8 +57,8 @@ fn keep(folder: &Path, now: SystemTime, text: &str) -> io::Result<PathBuf> {
     let path = crate::recording::free_path(folder, &name, "txt", |path| !path.exists());
     fs::write(&path, text)?;
     let mut reports: Vec<PathBuf> = fs::read_dir(folder)?.flatten().map(|entry| entry.path()).collect();
-    // Their names are their dates.
-    reports.sort();
+    // Their names are their dates; a second one of a second has a number behind it.
+    reports.sort_by(|one, other| one.file_stem().cmp(&other.file_stem()));
     let surplus = reports.len().saturating_sub(MOST_KEPT);
     for old in reports.into_iter().filter(|report| *report != path).take(surplus) {
         fs::remove_file(old)?;

@@ -12,6 +12,8 @@ mod hardware;
 mod machine;
 mod rotor;
 mod stepper;
+#[cfg(test)]
+mod tests;
 mod unit;
 
 pub use happening::{Happening, What};

@@ -8,6 +8,7 @@ mod formatting;
 mod images;
 mod language;
 mod manual;
+mod mecc;
 mod messages;
 mod mutations;
 mod precedence;

@@ -8,6 +8,8 @@ pub mod codes;
 mod format;
 mod lexer;
 mod parser;
+#[cfg(test)]
+mod tests;
 mod written;
 
 pub use check::{Checked, LONGEST_TEXT, Macro, check};

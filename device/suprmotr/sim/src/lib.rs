@@ -19,6 +19,8 @@ mod outbox;
 mod program;
 mod servo;
 mod store;
+#[cfg(test)]
+mod tests;
 mod trajectory;
 mod unit;
 

@@ -10,6 +10,7 @@ mod mind_guard;
 mod mind_table;
 mod mind_trial;
 mod noisy_current;
+mod other_make;
 mod small_faults;
 mod small_table;
 mod ways_out;

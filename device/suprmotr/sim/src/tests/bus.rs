@@ -1,11 +1,11 @@
 //! Several boards on a line: who listens, who answers, and what becomes of two answers (SuprMotr manual, "Address Selection").
 
+use crate::{SuprMotr, SuprMotrConfig};
 use brushwork_plant::machine::Machine;
 use brushwork_plant::world::WorldAction;
-use brushwork_suprmotr_sim::{SuprMotr, SuprMotrConfig};
 use brushwork_suprmotr_wire::{Address, ReportForm};
 
-use crate::bench::Bench;
+use crate::tests::bench::Bench;
 
 fn config(number: u8) -> SuprMotrConfig {
     SuprMotrConfig::new(Address::new(number).expect("there are 16"))

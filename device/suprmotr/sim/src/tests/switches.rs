@@ -1,12 +1,12 @@
 //! Limit switches, reference and find-edge (SuprMotr manual, connector J4 and command FE).
 
+use crate::place;
 use brushwork_plant::machine::Machine;
 use brushwork_plant::world::{SwitchKind, WorldAction};
-use brushwork_suprmotr_sim::place;
 use brushwork_suprmotr_wire::{inputs, limits, motion};
 use brushwork_values::Motor;
 
-use crate::bench::Bench;
+use crate::tests::bench::Bench;
 
 fn encoder(bench: &Bench) -> i64 {
     bench.unit().view().axes[0].encoder_counts

@@ -1,6 +1,6 @@
 //! The board with its motors, as a server drives it.
 
-use brushwork_motorvator_sim::{DrivenMotorvator, Motorvator};
+use crate::{DrivenMotorvator, Motorvator};
 use brushwork_plant::machine::{Machine, StreamIndex};
 use brushwork_plant::presets::presets;
 use brushwork_plant::world::{PinSignal, WorldAction};

@@ -2,7 +2,7 @@
 
 use brushwork_suprmotr_wire::{ErrorCode, operation};
 
-use crate::bench::{Bench, number_in};
+use crate::tests::bench::{Bench, number_in};
 
 /// How often the axis sets out for another place until nothing runs any more.
 fn moves(bench: &mut Bench, most_ms: u64) -> usize {
@@ -221,7 +221,7 @@ fn reports_in_a_loop_come_no_faster_than_the_wire_lets_them() {
 /// What runs is told with its macro and its place in it.
 #[test]
 fn each_command_that_begins_can_be_looked_at() {
-    use brushwork_suprmotr_sim::{SuprMotr, SuprMotrConfig};
+    use crate::{SuprMotr, SuprMotrConfig};
     use brushwork_suprmotr_wire::{Address, Radix};
     use std::time::Duration;
     let mut unit = SuprMotr::new(SuprMotrConfig::new(Address::FACTORY)).expect("the slide is sound");

@@ -1,10 +1,10 @@
 //! Lines, single characters, errors and number forms (SuprMotr manual, "Communications").
 
+use crate::SuprMotrConfig;
 use brushwork_plant::machine::Machine;
-use brushwork_suprmotr_sim::SuprMotrConfig;
 use brushwork_suprmotr_wire::{Address, COMMANDS, ReportForm, operation};
 
-use crate::bench::Bench;
+use crate::tests::bench::Bench;
 
 #[test]
 fn letters_of_either_case_and_spaces_make_the_same_line() {

@@ -5,7 +5,7 @@ use brushwork_plant::world::WorldAction;
 use brushwork_suprmotr_wire::{motion, operation};
 use brushwork_values::Motor;
 
-use crate::bench::Bench;
+use crate::tests::bench::Bench;
 
 /// What friction alone holds back at factory gain: 4.8 % of the stall torque over 75 of 32,768 a count, and a step of the bridge.
 const STUCK_COUNTS: i64 = 23;

@@ -1,7 +1,7 @@
 //! The complete listings of the manual, with what it says that they do.
 
-use crate::bench::{Bench, assert_times};
-use brushwork_motorvator_sim::What;
+use crate::What;
+use crate::tests::bench::{Bench, assert_times};
 use brushwork_script::mecc::{codes, compile};
 
 const FLASH: &str = include_str!("../../../../../assets/mecc/flash.mecc");

@@ -2,11 +2,11 @@
 
 use std::time::Duration;
 
+use crate::{Eeprom, SuprMotrConfig};
 use brushwork_plant::machine::{Machine, StreamIndex};
-use brushwork_suprmotr_sim::{Eeprom, SuprMotrConfig};
 use brushwork_suprmotr_wire::{Address, operation};
 
-use crate::bench::Bench;
+use crate::tests::bench::Bench;
 
 #[test]
 fn a_board_leaves_the_factory_as_the_manual_lists_it() {

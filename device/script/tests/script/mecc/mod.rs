@@ -50,11 +50,11 @@ impl Host for Bare {
 
 /// The programs of the manual, as they are shipped.
 const EXAMPLES: [&str; 5] = [
-    include_str!("../../../../assets/mecc/flash.mecc"),
-    include_str!("../../../../assets/mecc/limit_switch.mecc"),
-    include_str!("../../../../assets/mecc/motors.mecc"),
-    include_str!("../../../../assets/mecc/send_receive.mecc"),
-    include_str!("../../../../assets/mecc/wait_clock.mecc"),
+    include_str!("../../../../../assets/mecc/flash.mecc"),
+    include_str!("../../../../../assets/mecc/limit_switch.mecc"),
+    include_str!("../../../../../assets/mecc/motors.mecc"),
+    include_str!("../../../../../assets/mecc/send_receive.mecc"),
+    include_str!("../../../../../assets/mecc/wait_clock.mecc"),
 ];
 
 /// A program for each code of an error or warning.

@@ -1,6 +1,6 @@
 //! A controller of another make: its own loop, its own line, noise on the currents it reports.
 
-use crate::machine::{Complex, Draw, Machine, Motor};
+use super::machine::{Complex, Draw, Machine, Motor};
 use brushwork_mcp_axis::{McpHeld, McpLaw, McpWrite, PositionRegisters, VelocityRegisters};
 use brushwork_tuning::axis::{Axis, AxisError, Exchange, Sample, Status, Want};
 use brushwork_tuning::setup::{LoopAxis, Setup};

@@ -3,8 +3,8 @@
 
 use std::time::Duration;
 
+use crate::{SuprMotr, SuprMotrBus, SuprMotrConfig};
 use brushwork_plant::machine::{Machine, StreamIndex};
-use brushwork_suprmotr_sim::{SuprMotr, SuprMotrBus, SuprMotrConfig};
 use brushwork_suprmotr_wire::{Address, COMMANDS, Command, Line, Mnemonic, Radix, Single};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};

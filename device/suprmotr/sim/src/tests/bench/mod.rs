@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
+use crate::{SuprMotr, SuprMotrBus, SuprMotrConfig, pin};
 use brushwork_plant::machine::{Machine, StreamIndex};
 use brushwork_plant::world::{PinSignal, WorldAction};
-use brushwork_suprmotr_sim::{SuprMotr, SuprMotrBus, SuprMotrConfig, pin};
 use brushwork_suprmotr_wire::{Address, Status};
 
 /// Longer than any report takes, echo and reply together.

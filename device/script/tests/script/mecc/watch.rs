@@ -1,6 +1,6 @@
 //! Names and expressions of a program for its debugger.
 
-use crate::Bare;
+use super::Bare;
 use brushwork_script::debug::{Show, code_id};
 use brushwork_script::mecc::Names;
 use brushwork_script::vm::Machine;

@@ -1,8 +1,8 @@
 //! Macro files as a whole: what they mean, what is said about them, and their one style.
 
+use crate::{Checked, check, codes, format, written};
 use brushwork_script::diagnostic::Severity;
 use brushwork_script::text::Lines;
-use brushwork_suprmotr_macros::{Checked, check, codes, format, written};
 use brushwork_suprmotr_wire::{COMMANDS, Command, Mnemonic, Radix};
 use proptest::prelude::*;
 

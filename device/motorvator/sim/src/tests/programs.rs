@@ -1,7 +1,7 @@
 //! Small programs whose frames were worked out by hand.
 
-use crate::bench::{Bench, assert_times};
-use brushwork_motorvator_sim::What;
+use crate::What;
+use crate::tests::bench::{Bench, assert_times};
 
 /// Declared in front of each program: the frame is `=`, a, b, c, the two bytes of w, d and e.
 const HEAD: &str = "\

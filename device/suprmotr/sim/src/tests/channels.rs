@@ -1,8 +1,8 @@
 //! Digital channels, analog inputs and the analog output (SuprMotr manual, connector J3 and commands SO to XF).
 
-use brushwork_suprmotr_sim::pin;
+use crate::pin;
 
-use crate::bench::Bench;
+use crate::tests::bench::Bench;
 
 #[test]
 fn channels_are_told_all_or_one() {

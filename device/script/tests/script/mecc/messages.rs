@@ -2,7 +2,7 @@
 //!
 //! `BRUSHWORK_UPDATE=1` writes the latter anew; the difference in version control is what to look at then.
 
-use crate::wrong;
+use super::wrong;
 use brushwork_script::mecc::{codes, compile};
 use brushwork_script::text::Lines;
 use std::path::Path;
@@ -33,7 +33,7 @@ fn each_code_has_a_program_and_says_the_same_as_ever() {
         );
         assert_eq!(compiled.is_ok(), code.starts_with('W'), "{code}");
     }
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/mecc/messages.txt");
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/script/mecc/messages.txt");
     if std::env::var_os("BRUSHWORK_UPDATE").is_some() {
         std::fs::write(&file, &page).expect("the text can be written");
     }

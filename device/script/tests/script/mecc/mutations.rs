@@ -2,7 +2,7 @@
 //!
 //! `BRUSHWORK_MCL_MUTATIONS=n` runs n of them (the default is small), `BRUSHWORK_SEED=n` others.
 
-use crate::{Bare, EXAMPLES, wrong};
+use super::{Bare, EXAMPLES, wrong};
 use brushwork_script::image;
 use brushwork_script::mecc::format::format;
 use brushwork_script::mecc::{codes, compile};

@@ -1,8 +1,8 @@
 //! The serial line and the command line.
 
-use crate::bench::Bench;
-use brushwork_motorvator_sim::assumed::HELP;
-use brushwork_motorvator_sim::{Motorvator, What};
+use crate::assumed::HELP;
+use crate::tests::bench::Bench;
+use crate::{Motorvator, What};
 use std::time::Duration;
 
 const ECHO: &str = "\

@@ -1,6 +1,6 @@
 //! The host library that comes with the program, on the simulated board: `assets/mecc/host.mecc`.
 
-use crate::bench::Bench;
+use crate::tests::bench::Bench;
 use brushwork_motorvator_wire::{line_of_host, parse_line_of_board};
 use brushwork_script::diagnostic::Severity;
 use brushwork_script::mecc::compile;

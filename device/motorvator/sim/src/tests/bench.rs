@@ -1,7 +1,7 @@
 //! A board in virtual time.
 
-use brushwork_motorvator_sim::assumed::INSTRUCTION_TIME;
-use brushwork_motorvator_sim::{Happening, Motorvator, What};
+use crate::assumed::INSTRUCTION_TIME;
+use crate::{Happening, Motorvator, What};
 use brushwork_script::mecc::compile;
 use brushwork_script::text::Lines;
 use std::time::Duration;
