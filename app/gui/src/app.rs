@@ -121,6 +121,7 @@ impl App {
         self.update(&ctx);
         self.take_files(&ctx);
         let mut commands = actions::shortcuts(&ctx, &mut self.model);
+        self.model.appearance.language.begin();
         shell::shell_ui(ui, &mut self.model, &mut commands);
         for command in commands {
             self.apply(command);
@@ -385,6 +386,7 @@ impl App {
             Command::StartScript => self.start_script(),
             Command::StopScript => self.stop_script(),
             Command::Theme(theme) => model.appearance.theme = theme,
+            Command::Language(language) => model.appearance.language = language,
             Command::PlainEdges(plain) => model.appearance.plain = plain,
             Command::Scale(percent) => model.appearance.set_scale(percent),
             Command::StartNode(node) => self.start_node(node),

@@ -21,6 +21,7 @@ pub use super::model::guided::GuidedAction;
 use super::model::raw::RawAction;
 use super::model::to_all::ToAllAction;
 pub use super::tune::TuneAction;
+use crate::language::Language;
 use crate::model::{Column, HelpPage, Screen, Section, SettingsAction, Sheet, Tab};
 
 /// One action.
@@ -91,6 +92,7 @@ pub enum Command {
         again: bool,
     },
     Theme(ThemePreference),
+    Language(Language),
     PlainEdges(bool),
     /// Size of everything in the window, percent.
     Scale(u16),

@@ -22,6 +22,7 @@ pub mod frame;
 pub mod graph;
 pub mod help;
 pub mod keys;
+pub mod language;
 pub mod links;
 pub mod mcl;
 pub mod mcp;

@@ -17,6 +17,7 @@ use crossbeam_channel::{Receiver, Sender, bounded};
 use egui::{Context, Rect, ThemePreference, ViewportInfo};
 use serde::{Deserialize, Serialize};
 
+use super::language::Language;
 use super::model::Model;
 use super::model::screen::Screen;
 use brushwork_core::keep::folder;
@@ -35,6 +36,7 @@ pub struct Remembered {
     pub window: Option<Placed>,
     pub theme: ThemeWord,
     pub plain: bool,
+    pub language: Language,
     pub scale_percent: u16,
     /// The screen's title.
     pub screen: String,
@@ -74,6 +76,7 @@ impl Default for Remembered {
             window: None,
             theme: ThemeWord::System,
             plain: false,
+            language: Language::English,
             scale_percent: 0,
             screen: String::new(),
             recent: Vec::new(),
@@ -96,6 +99,7 @@ impl Remembered {
             ThemePreference::Dark => ThemeWord::Dark,
         };
         self.plain = model.appearance.plain;
+        self.language = model.appearance.language;
         self.scale_percent = model.appearance.scale_percent;
         model.screen.title().clone_into(&mut self.screen);
         self.recent = model.devices.recent.to_vec();
@@ -114,6 +118,7 @@ impl Remembered {
             ThemeWord::Dark => ThemePreference::Dark,
         };
         model.appearance.plain = self.plain;
+        model.appearance.language = self.language;
         model.appearance.set_scale(self.scale_percent);
         let screen = Screen::ALL.into_iter().find(|screen| screen.title() == self.screen);
         if let Some(screen) = screen {
@@ -327,6 +332,7 @@ mod tests {
         let (_folder, path) = file();
         let mut model = Model::default();
         model.appearance.theme = ThemePreference::Dark;
+        model.appearance.language = Language::German;
         model.appearance.set_scale(130);
         model.turn_to(Screen::Velocity);
         model.devices.remember("/dev/ttyACM0");

@@ -5,6 +5,7 @@
 //! keys call it, when it can be done and why not, and which [`Command`] it is.
 
 use crate::actions::messages::ActionMessage;
+use crate::language::word;
 use crate::messages::WindowStatusMessage;
 use std::borrow::Cow;
 use std::sync::OnceLock;
@@ -175,6 +176,11 @@ pub fn of_menu(menu: Menu) -> impl Iterator<Item = &'static Action> {
 }
 
 impl Action {
+    /// Its title in the language of the window.
+    pub fn said(&self) -> String {
+        word("action", self.title)
+    }
+
     /// Its keys as text: "Ctrl+Shift+P". Empty when it has none.
     pub fn keys_text(&self, ctx: &Context) -> String {
         match self.keys {

@@ -5,6 +5,7 @@ use egui::{Key, ThemePreference};
 use super::{Action, Keys, Ready, always, ctrl, ctrl_shift, key, only, shift};
 use crate::actions::messages::ActionMessage;
 use crate::command::Command;
+use crate::language::Language;
 use crate::model::{Model, Screen};
 
 /// A row for a screen: its title stands once, in [`Screen`].
@@ -21,6 +22,14 @@ macro_rules! theme {
         entry!(View 2 $id, $title, $help,
             Keys::None, always, |_| Command::Theme(ThemePreference::$theme),
             on |model| model.appearance.theme == ThemePreference::$theme)
+    };
+}
+
+macro_rules! language {
+    ($id:literal, $title:literal, $language:ident, $help:literal) => {
+        entry!(View 2 $id, $title, $help,
+            Keys::None, always, |_| Command::Language(Language::$language),
+            on |model| model.appearance.language == Language::$language)
     };
 }
 
@@ -52,6 +61,13 @@ pub(super) const ACTIONS: &[Action] = &[
     theme!("view.theme-system", "Theme as the System", System, "Light or dark as the desktop has it."),
     theme!("view.theme-light", "Light Theme", Light, "Dark text on a light ground."),
     theme!("view.theme-dark", "Dark Theme", Dark, "Light text on a dark ground."),
+    language!("view.english", "English", English, "The window in English."),
+    language!(
+        "view.german",
+        "Deutsch",
+        German,
+        "The window's menus, bars and start page in German; the rest is English."
+    ),
     entry!(View 2 "view.plain", "Plain Edges", "Draws without smoothing, which saves processor time where there is no graphics card.",
         Keys::None, always, |model| Command::PlainEdges(!model.appearance.plain), on |model| model.appearance.plain),
     entry!(View 3 "view.larger", "Larger", "Makes everything in the window larger.",

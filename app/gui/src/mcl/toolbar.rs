@@ -4,6 +4,7 @@ use egui::{Button, RichText, Role, Ui, WidgetInfo};
 
 use crate::actions;
 use crate::command::Commands;
+use crate::language::said;
 use crate::mcl::messages::PanelMessage;
 use crate::model::Model;
 
@@ -42,7 +43,7 @@ fn button_ui(ui: &mut Ui, id: &str, reads: &str, model: &Model, commands: &mut C
     let on = action.is_on.map(|is_on| is_on(model));
     let response = ui
         .add_enabled(ready.is_ok(), Button::selectable(on.unwrap_or(false), RichText::new(reads).size(12.5)));
-    let name = PanelMessage::Toolbar { action: action.title.trim_end_matches('…').to_string() }.to_string();
+    let name = said(&PanelMessage::Toolbar { action: action.said().trim_end_matches('…').to_owned() });
     response.widget_info(|| match on {
         Some(on) => WidgetInfo::selected(Role::Button, ready.is_ok(), on, &name),
         None => WidgetInfo::labeled(Role::Button, ready.is_ok(), &name),
@@ -50,8 +51,8 @@ fn button_ui(ui: &mut Ui, id: &str, reads: &str, model: &Model, commands: &mut C
     let keys = action.keys_text(ui.ctx());
     let keys = if keys.is_empty() { keys } else { format!(" ({keys})") };
     let reported = match &ready {
-        Ok(()) => format!("{}{keys}\n{}", action.title, action.help),
-        Err(why) => format!("{}{keys}\n{why}", action.title),
+        Ok(()) => format!("{}{keys}\n{}", action.said(), action.help),
+        Err(why) => format!("{}{keys}\n{why}", action.said()),
     };
     if response.clicked() {
         commands.push((action.command)(model));

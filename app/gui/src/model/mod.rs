@@ -1,5 +1,6 @@
 //! The window's state as plain data. Screens read it and ask for changes; nothing here draws or waits.
 
+use crate::language::Language;
 use brushwork_link::device::ArmScope;
 use egui::ThemePreference;
 
@@ -120,6 +121,7 @@ pub struct Appearance {
     pub scale_percent: u16,
     /// Hard edges, which software rendering draws in less time.
     pub plain: bool,
+    pub language: Language,
 }
 
 /// What was dragged: widths in points, and parts of a height.
@@ -165,7 +167,7 @@ impl Layout {
 
 impl Default for Appearance {
     fn default() -> Self {
-        Self { theme: ThemePreference::System, scale_percent: 100, plain: false }
+        Self { theme: ThemePreference::System, scale_percent: 100, plain: false, language: Language::English }
     }
 }
 

@@ -3,11 +3,14 @@
 use std::path::Path;
 
 use brushwork_link::PortInfo;
-use egui::{Align, Button, Frame, Key, Layout, Margin, RichText, ScrollArea, Stroke, Ui, vec2};
+use egui::{
+    Align, Button, Frame, Key, Layout, Margin, RichText, ScrollArea, Stroke, TextStyle, Ui, WidgetText, vec2,
+};
 
 use crate::command::{Command, Commands};
 use crate::family::{self, Family};
 use crate::focus::{self, Region, region_ui};
+use crate::language::{said, word};
 use crate::messages::ButtonMessage;
 use crate::model::devices::{Choice, described};
 use crate::model::{Model, Screen};
@@ -18,13 +21,13 @@ use crate::widgets::text_field::text_field_ui;
 
 /// Width from which two columns fit.
 const TWO_COLUMNS_FROM: f32 = 640.0;
-/// Room for the button beside a path.
+/// Room for the button beside a path, at least.
 const OPEN_WIDTH: f32 = 60.0;
 /// Recent connections and files that are offered here; the rest of the connections stand in the list at the left.
 const RECENT_SHOWN: usize = 4;
 
 pub fn start_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-    focus::heading_ui(ui, "Start");
+    focus::heading_ui(ui, &word("start", "Start"));
     ui.add_space(4.0);
     region_ui(ui, Region::Controls);
     let columns = if ui.available_width() < TWO_COLUMNS_FROM { 1 } else { 2 };
@@ -45,11 +48,11 @@ pub fn start_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 
 /// The ports as they come and go, and what may be in the way.
 fn ports_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-    heading_ui(ui, "Your controller");
+    heading_ui(ui, &word("start", "Your controller"));
     let ports = model.devices.ports.clone();
     for port in &ports {
         ui.horizontal(|ui| {
-            if ui.button(ButtonMessage::ConnectTo { target: port.name.clone() }.to_string()).clicked() {
+            if ui.button(said(&ButtonMessage::ConnectTo { target: port.name.clone() })).clicked() {
                 model.devices.choice = Choice::Port(port.name.clone());
                 commands.push(Command::Connect);
             }
@@ -61,12 +64,15 @@ fn ports_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             ui.label(failure.to_string());
         }
         (None, true) => {
-            ui.label("No serial port is there. Plug the controller in: its port appears here by itself.");
+            ui.label(word(
+                "start",
+                "No serial port is there. Plug the controller in: its port appears here by itself.",
+            ));
         }
         (None, false) => {}
     }
-    ui.weak("Family, baud rate and address are chosen at the left, where a path, tcp:HOST:PORT or a CAN adapter can be typed too.");
-    ui.collapsing("It does not appear, or cannot be opened", |ui| in_the_way_ui(ui, &ports));
+    ui.weak(word("start", "Family, baud rate and address are chosen at the left, where a path, tcp:HOST:PORT or a CAN adapter can be typed too."));
+    ui.collapsing(word("start", "It does not appear, or cannot be opened"), |ui| in_the_way_ui(ui, &ports));
 }
 
 /// What keeps a port from appearing or opening on a system, each with what to type where there is something.
@@ -144,7 +150,7 @@ fn recent_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
         return;
     }
     ui.add_space(10.0);
-    heading_ui(ui, "Connected to before");
+    heading_ui(ui, &word("start", "Connected to before"));
     for target in model.devices.recent.iter().take(RECENT_SHOWN) {
         if ui.button(target).clicked() {
             commands.push(Command::ConnectTo(target.clone()));
@@ -154,45 +160,59 @@ fn recent_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
 
 /// What needs no controller.
 fn files_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-    heading_ui(ui, "Without a controller");
+    heading_ui(ui, &word("start", "Without a controller"));
     ui.horizontal_wrapped(|ui| {
-        let what = "A profile, backup, recording, tuning report, script or firmware image";
-        if ui.button("Open a file…").on_hover_text(what).clicked() {
+        let what = word("start", "A profile, backup, recording, tuning report, script or firmware image");
+        if ui.button(word("start", "Open a file…")).on_hover_text(what).clicked() {
             commands.push(Command::ChooseFile);
         }
-        if ui.button("Backups…").on_hover_text("What this computer keeps of each controller").clicked() {
+        if ui
+            .button(word("start", "Backups…"))
+            .on_hover_text(word("start", "What this computer keeps of each controller"))
+            .clicked()
+        {
             commands.push(Command::ListBackups);
         }
-        if ui.button("Write a script").on_hover_text("The MCL editor, which checks what is written").clicked()
+        if ui
+            .button(word("start", "Write a script"))
+            .on_hover_text(word("start", "The MCL editor, which checks what is written"))
+            .clicked()
         {
             commands.push(Command::Show(Screen::MclEditor));
         }
-        if ui.button("CAN bus…").on_hover_text("Adapters, nodes and what they say").clicked() {
+        if ui
+            .button(word("start", "CAN bus…"))
+            .on_hover_text(word("start", "Adapters, nodes and what they say"))
+            .clicked()
+        {
             commands.push(Command::OpenCanOpen);
         }
     });
     ui.horizontal(|ui| {
-        let width = (ui.available_width() - OPEN_WIDTH).max(120.0);
+        let open = word("start", "Open");
+        let room =
+            WidgetText::from(open.as_str()).into_galley(ui, None, f32::INFINITY, TextStyle::Button).size().x
+                + 2.0 * ui.spacing().button_padding.x
+                + ui.spacing().item_spacing.x;
+        let width = (ui.available_width() - OPEN_WIDTH.max(room)).max(120.0);
         let response = ui
             .allocate_ui(vec2(width, ui.spacing().interact_size.y), |ui| {
                 text_field_ui(
                     ui,
                     &mut model.files.path,
-                    "File to open",
-                    "Path of a file, or drop one on this window",
+                    &word("start", "File to open"),
+                    &word("start", "Path of a file, or drop one on this window"),
                 )
             })
             .inner;
         let is_entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
         let path = model.files.path.trim().to_owned();
-        let is_clicked = ui.add_enabled(!path.is_empty(), Button::new("Open")).clicked();
+        let is_clicked = ui.add_enabled(!path.is_empty(), Button::new(open)).clicked();
         if (is_entered || is_clicked) && !path.is_empty() {
             commands.push(Command::OpenFile(path.into()));
         }
     });
-    ui.weak(
-        "A profile, backup, recording, tuning report, script or firmware image; its content tells which it is.",
-    );
+    ui.weak(word("start", "A profile, backup, recording, tuning report, script or firmware image; its content tells which it is."));
     if let Some(text) = model.front.graph.files.loading_text() {
         ui.weak(text);
     }
@@ -200,7 +220,7 @@ fn files_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         return;
     }
     ui.add_space(10.0);
-    heading_ui(ui, "Opened before");
+    heading_ui(ui, &word("start", "Opened before"));
     for path in model.files.recent.iter().take(RECENT_SHOWN) {
         let name =
             Path::new(path).file_name().map_or_else(|| path.clone(), |name| name.display().to_string());
@@ -212,12 +232,15 @@ fn files_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 
 /// One controller of each family, with a picture of the axis that it drives.
 fn simulated_ui(ui: &mut Ui, commands: &mut Commands) {
-    heading_ui(ui, "A simulated controller, in this program");
-    ui.weak("It answers like the real one, with motors, supply and faults of its own. Nothing can break.");
+    heading_ui(ui, &word("start", "A simulated controller, in this program"));
+    ui.weak(word(
+        "start",
+        "It answers like the real one, with motors, supply and faults of its own. Nothing can break.",
+    ));
     for family in family::all() {
         card_ui(ui, *family, commands);
     }
-    ui.weak("Other models are chosen at the left, beside Simulated.");
+    ui.weak(word("start", "Other models are chosen at the left, beside Simulated."));
 }
 
 fn card_ui(ui: &mut Ui, family: &dyn Family, commands: &mut Commands) {
@@ -230,7 +253,7 @@ fn card_ui(ui: &mut Ui, family: &dyn Family, commands: &mut Commands) {
             ui.label(RichText::new(name).strong());
             ui.weak(family.family().label());
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                if ui.add(Button::new(ButtonMessage::Open { name: name.to_string() }.to_string())).clicked() {
+                if ui.add(Button::new(said(&ButtonMessage::Open { name: name.to_string() }))).clicked() {
                     commands.push(Command::ConnectTo(format!("sim:{key}")));
                 }
             });

@@ -4,6 +4,7 @@ use brushwork_link::exchange::LinkStatistics;
 use egui::accesskit::Live;
 use egui::{Align2, Label, RichText, Role, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
+use crate::language::{said, word};
 use crate::messages::LinkMessage;
 use crate::model::{History, IndicatorState, Model};
 use crate::shell::messages::ShellMessage;
@@ -27,7 +28,13 @@ pub fn bottom_ui(ui: &mut Ui, model: &Model) {
         }
         for info in indicators {
             let state = model.front.link.indicators.named(info.short);
-            indicator::abbreviated_ui(ui, vec2(width.floor(), HEIGHT), info.short, info.title, state);
+            indicator::abbreviated_ui(
+                ui,
+                vec2(width.floor(), HEIGHT),
+                info.short,
+                &word("indicator", info.title),
+                state,
+            );
         }
         link_ui(ui, model);
     });
@@ -41,7 +48,7 @@ fn announce_ui(ui: &mut Ui, history: &History) {
     let text = newest.map_or_else(String::new, |entry| entry.text.clone());
     let is_grave = newest.is_some_and(|entry| entry.kind.state() >= IndicatorState::Warning);
     response.widget_info(|| {
-        WidgetInfo::labeled(Role::Status, true, ShellMessage::NewestEvent { text: text.clone() }.to_string())
+        WidgetInfo::labeled(Role::Status, true, said(&ShellMessage::NewestEvent { text: text.clone() }))
     });
     let live = if is_grave { Live::Assertive } else { Live::Polite };
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_live(live));
@@ -57,7 +64,7 @@ fn link_ui(ui: &mut Ui, model: &Model) {
         WidgetInfo::labeled(
             Role::Label,
             true,
-            ShellMessage::Link { first: first.clone(), second: second.clone() }.to_string(),
+            said(&ShellMessage::Link { first: first.clone(), second: second.clone() }),
         )
     });
     let font = egui::FontId::new(12.0, theme::figures().resolve(ui.style()).family);
@@ -78,14 +85,14 @@ fn has_errors(figures: &LinkStatistics) -> bool {
 
 /// Fixed-width figures: right-aligned, they stand still.
 fn lines(figures: Option<&LinkStatistics>) -> (String, String) {
-    let Some(figures) = figures else { return ("no link".to_owned(), String::new()) };
+    let Some(figures) = figures else { return (word("bar", "no link"), String::new()) };
     let first =
         LinkMessage::Rates { kbit_per_s: figures.kbit_per_s, requests_per_s: figures.transactions_per_s }
             .to_string();
     let errors = figures.timeouts + figures.crc_errors;
     let round_trip = milliseconds(figures.round_trip_median_s);
     // As wide as the plural, so that the figure stands still.
-    let noun = if errors == 1 { "error " } else { "errors" };
+    let noun = if errors == 1 { word("bar", "error ") } else { word("bar", "errors") };
     let second = format!("{round_trip} ms {errors:6} {noun}");
     (first, second)
 }

@@ -10,6 +10,7 @@ use egui::containers::menu::MenuButton;
 
 use crate::command::{Command, Commands};
 use crate::family::{self, Family};
+use crate::language::said;
 use crate::model::devices::{BAUD_RATES, Choice, Devices, described};
 use crate::model::{Arming, Connection, ConnectionId, IndicatorState, Model, Phase, Simulated, place_of};
 use crate::screens::face;
@@ -63,7 +64,7 @@ fn rows(model: &Model) -> Vec<Row> {
     let simulated = &devices.simulated;
     let (place, title) = (
         devices.simulated_target(),
-        ShellMessage::Simulated { name: name_of(&simulated.model).to_owned() }.to_string(),
+        said(&ShellMessage::Simulated { name: name_of(&simulated.model).to_owned() }),
     );
     let mut rows = vec![row(model, Choice::Simulated, &place, &title, "in this program")];
     for port in &devices.ports {
@@ -326,7 +327,7 @@ fn address_ui(ui: &mut Ui, shown: Addresses, family: &dyn Family) -> Addresses {
     let list = ComboBox::from_id_salt("address").width(72.0);
     let each = std::iter::once(Addresses::Scan).chain(each.map(Addresses::Only));
     let (all, cost) = (family.family().addresses(), family.scan_cost());
-    let help = ShellMessage::WhichAddresses { all, cost }.to_string();
+    let help = said(&ShellMessage::WhichAddresses { all, cost });
     choice_ui(ui, list, "Address", &mut chosen, each, text).on_hover_text(help);
     chosen
 }
@@ -379,10 +380,10 @@ fn connect_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     });
     if let Some(search) = searching {
         let bar = egui::ProgressBar::new(search.done as f32 / search.of.max(1) as f32);
-        let text = ShellMessage::Searched { what: search.what.clone(), done: search.done, of: search.of }
-            .to_string();
+        let text =
+            said(&ShellMessage::Searched { what: search.what.clone(), done: search.done, of: search.of });
         let response = ui.add(bar.desired_width(ui.available_width()).text(&text));
-        let spoken = ShellMessage::Searching { text: text.clone() }.to_string();
+        let spoken = said(&ShellMessage::Searching { text: text.clone() });
         response.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, &spoken));
     }
 }
@@ -419,7 +420,7 @@ fn units_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
 /// One unit of several, in two lines, so that five of them leave room for the screens: who it is, then how it is.
 fn board_ui(ui: &mut Ui, connection: &Connection, unit: &Identity, in_front: bool, commands: &mut Commands) {
     let link = &connection.link;
-    let (state, said) = link.boards.state(unit.address);
+    let (state, standing) = link.boards.state(unit.address);
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
         state.paint(ui, rect.center(), 4.0);
@@ -427,7 +428,7 @@ fn board_ui(ui: &mut Ui, connection: &Connection, unit: &Identity, in_front: boo
         let label = ui.selectable_label(in_front && selected, unit_text(unit));
         if !in_front {
             // Boards of two links may have one address.
-            let name = ShellMessage::UnitOn { unit: unit_text(unit), port: unit.port.clone() }.to_string();
+            let name = said(&ShellMessage::UnitOn { unit: unit_text(unit), port: unit.port.clone() });
             label.widget_info(|| WidgetInfo::selected(Role::Button, true, false, &name));
         }
         if label.clicked() {
@@ -440,7 +441,7 @@ fn board_ui(ui: &mut Ui, connection: &Connection, unit: &Identity, in_front: boo
         ui.spacing_mut().interact_size.y = 12.0;
         ui.horizontal(|ui| {
             let small = |text: &str| RichText::new(text).small();
-            ui.add(Label::new(small(&said)).truncate()).on_hover_text(&said);
+            ui.add(Label::new(small(&standing)).truncate()).on_hover_text(&standing);
             if !figures.is_empty() {
                 ui.add(Label::new(small(&figures).weak()).truncate()).on_hover_text(&figures);
             }

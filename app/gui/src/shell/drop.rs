@@ -2,6 +2,7 @@
 
 use egui::{Align2, Area, Context, CornerRadius, Frame, Id, Margin, Order, RichText, Stroke, vec2};
 
+use crate::language::{said, word};
 use crate::shell::messages::ShellMessage;
 use crate::theme::Palette;
 
@@ -13,7 +14,7 @@ pub fn drop_ui(ctx: &Context) {
     if count == 0 {
         return;
     }
-    let what = if count == 1 { "the file".to_owned() } else { ShellMessage::TheFiles { count }.to_string() };
+    let what = if count == 1 { word("bar", "the file") } else { said(&ShellMessage::TheFiles { count }) };
     let area = Area::new(Id::unique("files held over the window")).order(Order::Tooltip).interactable(false);
     area.anchor(Align2::CENTER_CENTER, vec2(0.0, 0.0)).show(ctx, |ui| {
         let palette = Palette::of(ui);
@@ -21,8 +22,8 @@ pub fn drop_ui(ctx: &Context) {
         frame.corner_radius(CornerRadius::same(6)).inner_margin(Margin::same(18)).show(ui, |ui| {
             ui.set_width(WIDTH);
             ui.vertical_centered(|ui| {
-                ui.label(RichText::new(ShellMessage::DropToOpen { what }.to_string()).size(18.0).strong());
-                ui.label("Profile, backup, recording, tuning report, script or firmware image");
+                ui.label(RichText::new(said(&ShellMessage::DropToOpen { what })).size(18.0).strong());
+                ui.label(word("bar", "Profile, backup, recording, tuning report, script or firmware image"));
             });
         });
     });

@@ -5,6 +5,7 @@ use egui::{Align, Button, Label, Layout, Panel, RichText, Role, ScrollArea, Ui, 
 use super::devices::devices_ui;
 use crate::command::{Command, Commands};
 use crate::focus::{Region, region_ui};
+use crate::language::word;
 use crate::model::{Connection, Model};
 use crate::theme::Palette;
 use crate::widgets::{heading_ui, stop};
@@ -50,12 +51,13 @@ fn script_ui(ui: &mut Ui, model: &Model) {
 
 /// Shows and hides the panel of the simulated controller's world.
 fn world_ui(ui: &mut Ui, open: &mut bool) {
-    heading_ui(ui, "Simulator");
+    heading_ui(ui, &word("bar", "Simulator"));
     ui.with_layout(Layout::top_down_justified(Align::Min), |ui| {
-        let button = Button::selectable(*open, "Simulated world").right_text(RichText::new("Ctrl+B").small());
-        let note = "Load, batteries, switches, inputs and faults of the simulated controller";
+        let title = word("bar", "Simulated world");
+        let button = Button::selectable(*open, &title).right_text(RichText::new("Ctrl+B").small());
+        let note = word("bar", "Load, batteries, switches, inputs and faults of the simulated controller");
         let response = ui.add(button);
-        response.widget_info(|| WidgetInfo::selected(Role::Button, true, *open, "Simulated world"));
+        response.widget_info(|| WidgetInfo::selected(Role::Button, true, *open, &title));
         if response.on_hover_text(note).clicked() {
             *open = !*open;
         }
@@ -64,14 +66,14 @@ fn world_ui(ui: &mut Ui, open: &mut bool) {
 
 fn screens_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     let (family, current) = (model.front.family(), model.screen);
-    heading_ui(ui, "Screens");
+    heading_ui(ui, &word("bar", "Screens"));
     ui.spacing_mut().item_spacing.y = 2.0;
     ui.with_layout(Layout::top_down_justified(Align::Min), |ui| {
         for screen in model.front.screens() {
-            let (title, is_current) = (family.title(screen), current == screen);
+            let (title, is_current) = (word("screen", family.title(screen)), current == screen);
             let shortcut = RichText::new(format!("Ctrl+{}", screen as usize + 1)).small();
-            let response = ui.add(Button::selectable(is_current, title).right_text(shortcut));
-            response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_current, title));
+            let response = ui.add(Button::selectable(is_current, &title).right_text(shortcut));
+            response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_current, &title));
             if response.clicked() {
                 commands.push(Command::Show(screen));
             }

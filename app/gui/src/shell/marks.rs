@@ -4,6 +4,7 @@ use brushwork_link::settings::{Difference, diff};
 use egui::{Align2, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
 use crate::command::{Command, Commands};
+use crate::language::{said, word};
 use crate::model::{IndicatorState, Model, Saved, Screen};
 use crate::shell::messages::BarMarkMessage;
 use crate::theme::Palette;
@@ -14,10 +15,10 @@ const HEIGHT: f32 = 36.0;
 /// One indicator with two lines; pressing it goes to the settings.
 pub fn marks_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     let (state, first, second) = mark(model);
-    let (first, second) = (first.to_string(), second.to_string());
+    let (first, second) = (said(&first), said(&second));
     let palette = Palette::of(ui);
     let (rect, response) = ui.allocate_exact_size(vec2(WIDTH, HEIGHT), Sense::click());
-    let spoken = BarMarkMessage::Settings { first: first.clone(), second: second.clone() }.to_string();
+    let spoken = said(&BarMarkMessage::Settings { first: first.clone(), second: second.clone() });
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &spoken));
     let outline = match (response.has_focus(), response.hovered()) {
         (true, _) => Stroke::new(2.0, palette.accent),
@@ -31,8 +32,11 @@ pub fn marks_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     let left = rect.left() + 28.0;
     painter.text(pos2(left, rect.top() + 4.0), Align2::LEFT_TOP, &first, small.clone(), palette.text);
     painter.text(pos2(left, rect.bottom() - 4.0), Align2::LEFT_BOTTOM, &second, small, palette.weak_text);
-    let help = "Edits that are not written, RAM that is not saved to EEPROM, and the open profile. The EEPROM is known \
-                once it was saved or loaded from here. Press to see them.";
+    let help = word(
+        "bar",
+        "Edits that are not written, RAM that is not saved to EEPROM, and the open profile. The EEPROM is known \
+                once it was saved or loaded from here. Press to see them.",
+    );
     if response.on_hover_text(format!("{spoken}\n{help}")).clicked() {
         commands.push(Command::Show(Screen::GeneralSettings));
     }

@@ -4,6 +4,7 @@ use egui::{Button, MenuBar, Response, Role, ScrollArea, Ui, WidgetInfo};
 
 use crate::actions::{self, Action, Menu};
 use crate::command::Commands;
+use crate::language::word;
 use crate::model::Model;
 
 /// So that titles and keys stand clear of each other.
@@ -14,7 +15,7 @@ const BELOW: f32 = 136.0;
 pub fn menu_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     MenuBar::new().ui(ui, |ui| {
         for menu in Menu::ALL {
-            ui.menu_button(menu.title(), |ui| {
+            ui.menu_button(word("menu", menu.title()), |ui| {
                 // A long menu scrolls: it never hangs over the Stop button.
                 let room = ui.ctx().content_rect().height() - BELOW;
                 let scroll = ScrollArea::vertical().max_height(room).min_scrolled_height(room);
@@ -42,11 +43,12 @@ fn items_ui(ui: &mut Ui, menu: Menu, model: &Model, commands: &mut Commands) {
 fn item_ui(ui: &mut Ui, action: &Action, model: &Model) -> Response {
     let ready = (action.ready)(model);
     let is_on = action.is_on.is_some_and(|is_on| is_on(model));
-    let button = Button::selectable(is_on, action.title).shortcut_text(action.keys_text(ui.ctx()));
+    let title = action.said();
+    let button = Button::selectable(is_on, &title).shortcut_text(action.keys_text(ui.ctx()));
     let response = ui.add_enabled(ready.is_ok(), button);
     response.widget_info(|| match action.is_on {
-        Some(_) => WidgetInfo::selected(Role::MenuItemCheckBox, ready.is_ok(), is_on, action.title),
-        None => WidgetInfo::labeled(Role::MenuItem, ready.is_ok(), action.title),
+        Some(_) => WidgetInfo::selected(Role::MenuItemCheckBox, ready.is_ok(), is_on, &title),
+        None => WidgetInfo::labeled(Role::MenuItem, ready.is_ok(), &title),
     });
     let reported = ready.err().unwrap_or(action.help.into());
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_description(&*reported));

@@ -1,5 +1,6 @@
 //! The command palette: everything that can be done, searched by name and run by key.
 
+use crate::language::{said, word};
 use crate::messages::WindowStatusMessage;
 use crate::shell::messages::ShellMessage;
 use egui::{
@@ -65,7 +66,7 @@ fn run(row: &Row, model: &mut Model, commands: &mut Commands) {
 /// Every action, then the other open devices and the recent connections.
 fn rows(ctx: &Context, model: &Model) -> Vec<Row> {
     let of_action = |action: &actions::Action| Row {
-        name: format!("{}: {}", action.place.menu.title(), action.title.trim_end_matches('…')),
+        name: format!("{}: {}", word("menu", action.place.menu.title()), action.said().trim_end_matches('…')),
         keys: action.keys_text(ctx),
         ready: (action.ready)(model),
         command: (action.command)(model),
@@ -73,13 +74,13 @@ fn rows(ctx: &Context, model: &Model) -> Vec<Row> {
     let of_connection = |connection: &Connection| {
         let target = connection.target.as_deref()?;
         let (name, command) = (
-            ShellMessage::BringToFront { target: target.to_string() }.to_string(),
+            said(&ShellMessage::BringToFront { target: target.to_string() }),
             Command::Front(connection.id()),
         );
         Some(Row { name, keys: String::new(), ready: Ok(()), command })
     };
     let of_recent = |target: &String| Row {
-        name: ShellMessage::ConnectTo { target: target.clone() }.to_string(),
+        name: said(&ShellMessage::ConnectTo { target: target.clone() }),
         keys: String::new(),
         ready: Ok(()),
         command: Command::ConnectTo(target.clone()),

@@ -5,6 +5,7 @@ use egui::{Label, Role, Ui, WidgetInfo, vec2};
 
 use crate::command::{Command, Commands};
 use crate::family::{Figure, Figures};
+use crate::language::{said, word};
 use crate::model::Model;
 use crate::shell::messages::ShellMessage;
 use crate::widgets::{NO_VALUE, Readout, fixed_label_ui};
@@ -49,18 +50,13 @@ fn row_end(widths: &[f32], start: usize, available: f32, gap: f32) -> usize {
 }
 
 impl Figures {
-    fn readout(&self, figure: &Figure) -> Readout<'static> {
-        Readout {
-            label: figure.label,
-            unit: figure.unit,
-            digits: self.digits,
-            unit_letters: self.unit_letters,
-        }
+    fn readout<'a>(&self, figure: &Figure, label: &'a str) -> Readout<'a> {
+        Readout { label, unit: figure.unit, digits: self.digits, unit_letters: self.unit_letters }
     }
 
     fn width(&self, ui: &Ui) -> f32 {
         let zero = if self.zero { GAP + ZERO_WIDTH } else { 0.0 };
-        let readout = self.rows.first().map_or(0.0, |figure| self.readout(figure).size(ui).x);
+        let readout = self.rows.first().map_or(0.0, |figure| self.readout(figure, "").size(ui).x);
         self.label_width + GAP + readout + zero
     }
 }
@@ -72,9 +68,10 @@ fn block_ui(ui: &mut Ui, block: &Figures, model: &Model, commands: &mut Commands
         let is_there = |figure: &&Figure| figure.channel.motor.is_none_or(|motor| motors.contains(&motor));
         for figure in block.rows.iter().filter(is_there) {
             ui.horizontal(|ui| {
-                fixed_label_ui(ui, figure.label, block.label_width);
+                let label = word("figure", figure.label);
+                fixed_label_ui(ui, &label, block.label_width);
                 let value = model.front.link.readings.text(figure.channel);
-                block.readout(figure).ui(ui, value.as_deref());
+                block.readout(figure, &label).ui(ui, value.as_deref());
                 if block.zero {
                     zero_ui(ui, figure.motor, model.is_connected(), commands);
                 }
@@ -85,13 +82,11 @@ fn block_ui(ui: &mut Ui, block: &Figures, model: &Model, commands: &mut Commands
 
 fn zero_ui(ui: &mut Ui, motor: Motor, connected: bool, commands: &mut Commands) {
     ui.add_enabled_ui(connected, |ui| {
-        let response = ui.add_sized(vec2(ZERO_WIDTH, ROW_HEIGHT - 2.0), egui::Button::new("Zero").small());
-        let name = ShellMessage::ZeroEncoder { motor }.to_string();
+        let response =
+            ui.add_sized(vec2(ZERO_WIDTH, ROW_HEIGHT - 2.0), egui::Button::new(word("bar", "Zero")).small());
+        let name = said(&ShellMessage::ZeroEncoder { motor });
         response.widget_info(|| WidgetInfo::labeled(Role::Button, connected, &name));
-        if response
-            .on_hover_text(ShellMessage::SetsToZero { number: motor.index() + 1 }.to_string())
-            .clicked()
-        {
+        if response.on_hover_text(said(&ShellMessage::SetsToZero { number: motor.index() + 1 })).clicked() {
             commands.push(Command::ZeroEncoder(motor));
         }
     });
@@ -99,16 +94,14 @@ fn zero_ui(ui: &mut Ui, motor: Motor, connected: bool, commands: &mut Commands) 
 
 fn identity_ui(ui: &mut Ui, model: &Model) {
     let identity = model.front.link.identity();
-    let title = identity.map(|identity| {
-        let simulated = if identity.simulated { " (simulated)" } else { "" };
-        format!("{}{simulated}", identity.title())
+    let title = identity.map(|identity| match identity.simulated {
+        true => format!("{} ({})", identity.title(), word("bar", "simulated")),
+        false => identity.title().to_owned(),
     });
     let version = identity.map(|identity| match identity.firmware.as_str() {
-        "" => "not reported".to_owned(),
+        "" => word("bar", "not reported"),
         version => match model.front.family().generation_number(identity) {
-            Some(generation) => {
-                ShellMessage::Version { version: version.to_string(), generation }.to_string()
-            }
+            Some(generation) => said(&ShellMessage::Version { version: version.to_string(), generation }),
             None => identity.generation.to_string(),
         },
     });
@@ -116,11 +109,11 @@ fn identity_ui(ui: &mut Ui, model: &Model) {
     let width = ui.available_width().clamp(IDENTITY_WIDTH, 2.0 * IDENTITY_WIDTH);
     ui.vertical(|ui| {
         ui.spacing_mut().item_spacing = vec2(GAP, 2.0);
-        for (label, value) in [("Model", title), ("Version", version)] {
+        for (label, value) in [(word("bar", "Model"), title), (word("bar", "Version"), version)] {
             ui.horizontal(|ui| {
                 ui.set_width(width);
-                fixed_label_ui(ui, label, 48.0);
-                let spoken = format!("{label}: {}", value.as_deref().unwrap_or("no value"));
+                fixed_label_ui(ui, &label, 48.0);
+                let spoken = format!("{label}: {}", value.clone().unwrap_or_else(|| word("bar", "no value")));
                 let text = ui.add(Label::new(value.as_deref().unwrap_or(NO_VALUE)).truncate());
                 text.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
             });

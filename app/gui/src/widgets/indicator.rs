@@ -8,6 +8,7 @@ use egui::{
     Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 
+use crate::language::word;
 use crate::model::indicator::IndicatorState;
 use crate::theme::{self, Palette};
 
@@ -93,8 +94,9 @@ pub fn abbreviated_ui(
     state: IndicatorState,
 ) -> Response {
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
-    response
-        .widget_info(|| WidgetInfo::labeled(Role::Status, true, format!("{abbreviation}: {}", state.word())));
+    response.widget_info(|| {
+        WidgetInfo::labeled(Role::Status, true, format!("{abbreviation}: {}", word("state", state.word())))
+    });
     let palette = Palette::of(ui);
     let alarming = state >= IndicatorState::Active;
     let outline = if alarming { state.color(palette) } else { palette.line };
@@ -109,7 +111,7 @@ pub fn abbreviated_ui(
         font,
         color,
     );
-    response.on_hover_text(format!("{name}: {}", state.word()))
+    response.on_hover_text(format!("{name}: {}", word("state", state.word())))
 }
 
 /// Room for "since 10:00:00".

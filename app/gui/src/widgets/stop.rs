@@ -3,6 +3,7 @@
 use egui::{Align2, FontId, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
 
 use crate::keys::stop_words;
+use crate::language::{said, word};
 use crate::messages::ButtonMessage;
 use crate::theme::Palette;
 
@@ -25,7 +26,7 @@ pub fn small_stop_ui(ui: &mut Ui, connected: bool) -> Response {
 fn sized_ui(ui: &mut Ui, connected: bool, height: f32) -> Response {
     let palette = Palette::of(ui);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
-    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Stop All"));
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, word("bar", "Stop All")));
     let keys = stop_words(ui.ctx());
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_keyboard_shortcut(keys));
     let (fill, text) =
@@ -41,14 +42,14 @@ fn sized_ui(ui: &mut Ui, connected: bool, height: f32) -> Response {
     let painter = ui.painter();
     painter.rect(rect, 6.0, fill, ring, StrokeKind::Inside);
     if height < HEIGHT {
-        let words = ButtonMessage::StopAll { keys: keys.to_string() }.to_string();
+        let words = said(&ButtonMessage::StopAll { keys: keys.to_string() });
         painter.text(rect.center(), Align2::CENTER_CENTER, words, FontId::proportional(13.5), text);
         return response;
     }
     painter.text(
         rect.center() - vec2(0.0, 8.0),
         Align2::CENTER_CENTER,
-        "STOP ALL",
+        word("bar", "Stop All").to_uppercase(),
         FontId::proportional(22.0),
         text,
     );

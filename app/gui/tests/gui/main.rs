@@ -13,6 +13,7 @@ mod graph;
 mod graph_place;
 mod kept;
 mod keyboard;
+mod language;
 mod mcl;
 mod motion_mind;
 mod motion_mind_driving;
