@@ -257,6 +257,7 @@ screen =
     .motion = Bewegung
     .inputs = Eingänge
     .inputs-and-outputs = Ein- und Ausgänge
+    .macros = Makros
     .command-terminal = Befehlsterminal
     .registers = Register
     .duty = Tastgrad

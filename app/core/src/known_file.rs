@@ -40,7 +40,7 @@ impl KnownFile {
         match self {
             Self::Profile | Self::Report => &["json"],
             Self::Recording => &["bwr", "csv"],
-            Self::Script => &["mcl", "mecc"],
+            Self::Script => &["mcl", "mecc", "macros"],
             Self::Firmware => &["bin"],
         }
     }

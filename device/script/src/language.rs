@@ -4,7 +4,49 @@ use crate::mcl::index as mcl;
 use crate::mcl::index::{Class, Completions, Help, Index, RenameError, SyntaxHint};
 use crate::mecc::index as mecc;
 use crate::text::Span;
+use std::hash::{Hash, Hasher};
 use std::ops::Range;
+use std::sync::OnceLock;
+
+/// The pieces of a line.
+pub type Pieces = Vec<(Range<usize>, Class)>;
+
+/// A language that another crate brings along: all that an editor asks of it.
+#[derive(Debug)]
+pub struct Grammar {
+    /// What it is called.
+    pub name: &'static str,
+    /// How the names of its files end.
+    pub ending: &'static str,
+    /// As [`Language::index`].
+    pub index: fn(&str) -> Index,
+    /// As [`Language::classes`].
+    pub classes: fn(&str) -> Pieces,
+    /// As [`Language::help`].
+    pub help: fn(&str) -> Option<Help>,
+    /// As [`Language::completions`].
+    pub completions: fn(&Index, &str, usize) -> Completions,
+    /// Whether no name of a program may be this word.
+    pub is_reserved: fn(&str) -> bool,
+    /// As [`Language::format`].
+    pub format: fn(&str) -> String,
+}
+
+impl PartialEq for Grammar {
+    fn eq(&self, other: &Self) -> bool {
+        self.ending == other.ending
+    }
+}
+
+impl Eq for Grammar {}
+
+impl Hash for Grammar {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.ending.hash(state);
+    }
+}
+
+static BROUGHT: OnceLock<Vec<&'static Grammar>> = OnceLock::new();
 
 /// A language of programs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -14,14 +56,38 @@ pub enum Language {
     Mcl,
     /// That of boards whose programs are run by events.
     Mecc,
+    /// One that another crate brings along.
+    Brought(&'static Grammar),
 }
 
 impl Language {
     /// The language of a file, by the end of its name.
     #[must_use]
     pub fn of_file(name: &str) -> Self {
-        let is_mecc = name.rsplit_once('.').is_some_and(|(_, end)| end.eq_ignore_ascii_case("mecc"));
-        if is_mecc { Self::Mecc } else { Self::Mcl }
+        let ends_so =
+            |ending: &str| name.rsplit_once('.').is_some_and(|(_, end)| end.eq_ignore_ascii_case(ending));
+        let brought = BROUGHT.get().into_iter().flatten().find(|grammar| ends_so(grammar.ending));
+        match brought {
+            Some(grammar) => Self::Brought(grammar),
+            None if ends_so("mecc") => Self::Mecc,
+            None => Self::Mcl,
+        }
+    }
+
+    /// Names the languages that others bring along. Only the first list counts.
+    pub fn bring(grammars: Vec<&'static Grammar>) {
+        // A second list is that of another test.
+        let _ = BROUGHT.set(grammars);
+    }
+
+    /// How the names of its files end.
+    #[must_use]
+    pub const fn ending(self) -> &'static str {
+        match self {
+            Self::Mcl => "mcl",
+            Self::Mecc => "mecc",
+            Self::Brought(grammar) => grammar.ending,
+        }
     }
 
     /// All there is to say about a text.
@@ -30,15 +96,17 @@ impl Language {
         match self {
             Self::Mcl => Index::of(text),
             Self::Mecc => mecc::index(text),
+            Self::Brought(grammar) => (grammar.index)(text),
         }
     }
 
     /// The pieces of a line.
     #[must_use]
-    pub fn classes(self, line: &str) -> Vec<(Range<usize>, Class)> {
+    pub fn classes(self, line: &str) -> Pieces {
         match self {
             Self::Mcl => mcl::classes(line),
             Self::Mecc => mecc::classes(line),
+            Self::Brought(grammar) => (grammar.classes)(line),
         }
     }
 
@@ -48,6 +116,7 @@ impl Language {
         match self {
             Self::Mcl => mcl::help(word),
             Self::Mecc => mecc::help(word),
+            Self::Brought(grammar) => (grammar.help)(word),
         }
     }
 
@@ -56,7 +125,7 @@ impl Language {
     pub fn syntax_at(self, line: &str, at: usize) -> Option<SyntaxHint> {
         match self {
             Self::Mcl => mcl::syntax_at(line, at),
-            Self::Mecc => None,
+            Self::Mecc | Self::Brought(_) => None,
         }
     }
 
@@ -66,6 +135,7 @@ impl Language {
         match self {
             Self::Mcl => index.completions(text, at),
             Self::Mecc => mecc::completions(index, text, at),
+            Self::Brought(grammar) => (grammar.completions)(index, text, at),
         }
     }
 
@@ -77,6 +147,7 @@ impl Language {
         match self {
             Self::Mcl => index.rename(at, new),
             Self::Mecc => mecc::rename(index, at, new),
+            Self::Brought(grammar) => index.rename_unless(at, new, grammar.is_reserved),
         }
     }
 
@@ -86,6 +157,7 @@ impl Language {
         match self {
             Self::Mcl => crate::mcl::format::format(text),
             Self::Mecc => crate::mecc::format::format(text),
+            Self::Brought(grammar) => (grammar.format)(text),
         }
     }
 }

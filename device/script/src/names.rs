@@ -22,6 +22,7 @@ impl Names {
         match language {
             Language::Mcl => mcl::Names::of(text).map(Self::Mcl),
             Language::Mecc => mecc::Names::of(text).map(Self::Mecc),
+            Language::Brought(_) => None,
         }
     }
 

@@ -95,6 +95,7 @@ const ARROWS: [(&str, &[&str]); 35] = [
             "brushwork-raster",
             "brushwork-script",
             "brushwork-suprmotr-client",
+            "brushwork-suprmotr-macros",
             "brushwork-suprmotr-wire",
             "brushwork-tuning",
             "brushwork-values",

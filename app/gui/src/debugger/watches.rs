@@ -44,6 +44,7 @@ pub fn watches_ui(ui: &mut Ui, debug: &mut Debugging, commands: &mut Commands) {
     let hint = match debug.language() {
         Language::Mcl => "e.g. total / 2, text(3), MOTORENCPOS(0)",
         Language::Mecc => "e.g. total / 2, table(3), GetClock()",
+        Language::Brought(_) => "",
     };
     let field = text_field_ui(ui, &mut debug.new_watch, "Add watch", hint);
     if field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter)) {
@@ -86,6 +87,7 @@ fn set_ui(ui: &mut Ui, debug: &mut Debugging, commands: &mut Commands) {
                 "Sets a variable, an element, a part (x.bit3) or a register while the script is paused."
             }
             Language::Mecc => "Sets a variable or a byte of a table while the program is paused.",
+            Language::Brought(_) => "",
         })),
     }
 }

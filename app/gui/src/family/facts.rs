@@ -7,6 +7,7 @@ use brushwork_link::device::{
     Addresses, ArmScope, Channel, Drive, Identity, Indicator, Job, PinSignal, StatusReport,
 };
 use brushwork_link::settings::{Group, Row, SettingValue, SettingsImage, SettingsTable, Subject};
+use brushwork_script::language::Grammar;
 use brushwork_script::program::Program;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::tune::Method;
@@ -176,6 +177,11 @@ pub trait Family: Sync {
     /// Whether a unit starts its script by itself, as far as its settings were read.
     fn autoruns(&self, _known: Known<'_>) -> bool {
         false
+    }
+
+    /// The language of its own that its programs are written in, where it brings one along.
+    fn grammar(&self) -> Option<&'static Grammar> {
+        None
     }
 
     /// The program through which a simulated unit is driven, where there is one.

@@ -9,12 +9,13 @@ use crate::command::{Command, Commands};
 use crate::debugger::DebugAction;
 use crate::model::messages::ScriptStateMessage;
 use crate::model::{Arming, IndicatorState, Model};
+use crate::screens::face;
 use crate::screens::stream::stream_ui;
 use crate::theme::Palette;
 use crate::widgets::arm_switch::arm_switch_ui;
 
 /// The switch with a line of what can happen, or how far a download is.
-pub fn runbar_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
+pub fn runbar_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     if model.front.debug.takes_mecc {
         return board_ui(ui, model, commands);
     }
@@ -26,6 +27,9 @@ pub fn runbar_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
             commands.push(if armed { Command::Disarm } else { Command::Arm(ArmScope::Script) });
         }
     });
+    if face::of(model.front.family()).run_ui(ui, model, commands) {
+        return;
+    }
     if let Some((fraction, text)) = model.front.script.job.progress() {
         ui.add(ProgressBar::new(fraction).desired_width(120.0));
         if ui.button("Cancel download").clicked() {

@@ -15,14 +15,21 @@ use super::sheet::PathField;
 use super::{DocId, Editor, Sheet, print};
 use crate::files::FileKind;
 use crate::model::message::Gravity;
+use brushwork_core::known_file::KnownFile;
 
 /// What programs are for the desktop's dialogs.
 pub fn mcl_files() -> FileKind {
-    FileKind { title: "MCL program".to_owned(), extension: "mcl".to_owned() }
+    FileKind { title: "Program".to_owned(), extension: KnownFile::Script.endings().join(",") }
 }
 
 pub fn pdf_files() -> FileKind {
     FileKind { title: "PDF".to_owned(), extension: "pdf".to_owned() }
+}
+
+/// A name as a file's, which has an ending.
+fn with_ending(name: &str, ending: &str) -> PathBuf {
+    let path = PathBuf::from(name);
+    if path.extension().is_some() { path } else { path.with_extension(ending) }
 }
 
 impl Editor {
@@ -46,8 +53,10 @@ impl Editor {
     /// Asks where to save a program.
     pub fn save_as(&mut self, id: DocId) {
         let Some(document) = self.document(id) else { return };
-        let path =
-            document.path.clone().unwrap_or_else(|| PathBuf::from(format!("{}.mcl", document.untitled)));
+        let path = document
+            .path
+            .clone()
+            .unwrap_or_else(|| with_ending(&document.untitled, document.language().ending()));
         self.open_sheet(Sheet::SaveAs { id, field: PathField::of(&path) });
     }
 
@@ -141,7 +150,8 @@ impl Editor {
         match sheet {
             Sheet::Open(field) => field.path(None).into_iter().for_each(|path| self.open_path(path)),
             Sheet::SaveAs { id, field } => {
-                field.path(Some("mcl")).into_iter().for_each(|path| self.save_to(id, path, false));
+                let ending = self.document(id).map_or("mcl", |document| document.language().ending());
+                field.path(Some(ending)).into_iter().for_each(|path| self.save_to(id, path, false));
             }
             Sheet::Print { id, field, .. } => {
                 field.path(Some("pdf")).into_iter().for_each(|path| self.print_to(id, path));

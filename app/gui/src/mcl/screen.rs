@@ -63,7 +63,7 @@ pub fn screen_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     commands.extend(actions.into_iter().map(Command::Mcl));
 }
 
-fn panel_tabs_ui(ui: &mut Ui, model: &Model, actions: &mut Vec<MclAction>, commands: &mut Commands) {
+fn panel_tabs_ui(ui: &mut Ui, model: &mut Model, actions: &mut Vec<MclAction>, commands: &mut Commands) {
     ui.add_space(2.0);
     reasons_ui(ui, model, commands);
     ui.horizontal(|ui| {

@@ -32,6 +32,11 @@ pub trait Face: Sync {
     /// What stands before and behind the rows of the part of the settings that is open.
     fn around_rows_ui(&self, _ui: &mut Ui, _general: &mut GeneralView<'_>, _is_before: bool) {}
 
+    /// What is done with the program in front on its controllers, behind the arm switch of the editor. False where the shared line is to be drawn.
+    fn run_ui(&self, _ui: &mut Ui, _model: &mut Model, _commands: &mut Commands) -> bool {
+        false
+    }
+
     /// A raw command, put together by hand. False where there is no unit that takes one.
     fn composer_ui(&self, _ui: &mut Ui, _model: &mut Model, _commands: &mut Commands) -> bool {
         false

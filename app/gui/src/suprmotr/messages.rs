@@ -25,3 +25,32 @@ messages! {
         Analog { name: &'static str, reads: String } "{name}: {reads}",
     }
 }
+
+messages! {
+    /// What is said of the macros of a board.
+    pub enum MacrosMessage {
+        Storing { stored: usize, of: usize } "Storing macros: {stored} of {of} are stored …",
+        Stored { macros: String } "Stored and read back: {macros}. Macros of other numbers stay as they were.",
+        NotStored { number: u8 } "Macro {number} did not come back as it was sent: it was not stored, or not whole. Nothing more was sent.",
+        Calling { number: u8 } "Calling macro {number} …",
+        Called { number: u8 } "Macro {number} was called. Stop All ends it.",
+        Read { macros: String } "Read from the board: {macros}.",
+        Same { macros: String } "The board and the file have the same: {macros}.",
+        Differ { names: String } "Other commands on the board: {names}.",
+        NotThere { names: String } "Not on the board: {names}.",
+        OnlyThere { numbers: String } "On the board alone: {numbers}.",
+        One "1 macro",
+        Many { count: usize } "{count} macros",
+        Said { text: String } "Macros: {text}",
+        Entry { number: u8, name: String } "{number} {name}",
+    }
+}
+
+messages! {
+    /// What is said of a line in the terminal.
+    pub enum TerminalMessage {
+        Silence "nothing came back",
+        NotSent "Not sent: the link is busy. Send it again in a moment.",
+        LinkEnded "The link ended before an answer came.",
+    }
+}

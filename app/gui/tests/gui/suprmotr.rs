@@ -1,4 +1,5 @@
-//! A SuprMotr in the window, by role and label, against a simulated controller in virtual time: its inputs and outputs.
+//! A SuprMotr in the window, by role and label, against a simulated controller in virtual time: its inputs and outputs, its macros, its
+//! terminal.
 
 use crate::support::alone::{LIMIT, alone};
 use crate::support::one::One;
@@ -8,6 +9,7 @@ use brushwork_plant::world::{PinSignal, WorldAction};
 use brushwork_suprmotr::sim_spec::SuprMotrSpec;
 use brushwork_suprmotr_client::SuprMotrDriver;
 use brushwork_suprmotr_sim::{SuprMotrBus, pin};
+use brushwork_suprmotr_wire::Radix;
 use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use std::time::Duration;
@@ -133,5 +135,166 @@ fn a_macro_goes_on_while_its_channels_are_watched_and_nothing_else_is_sent() {
         assert!(!bench.sees("A macro or a wait is in process"));
         assert!(bench.sees("Input 1 (J1 pin 3): 0.00 V (0)"), "lines are sent again");
         assert!(can_press(&bench, "Make channel 3 an output"));
+    });
+}
+
+/// What stands in the editor, checked.
+fn write(bench: &mut Bench, text: &str) {
+    let document = bench.app().model.mcl.front_mut();
+    document.replace_all(text);
+    document.known();
+    bench.pass_ms(100);
+}
+
+fn commands_of(bench: &Bench, number: u8) -> Vec<String> {
+    bench.line.with(|bus| {
+        let commands = bus.suprmotrs()[0].eeprom().macro_of(number).to_vec();
+        commands.into_iter().map(|command| command.text(Radix::Decimal)).collect()
+    })
+}
+
+const SHUTTLE: &str = "\
+# To and fro.
+const FAR = 2000
+
+macro shuttle = 3
+    MA FAR, WS 300
+    MA 0, WS 300
+    RP
+
+macro twice
+    MC shuttle
+";
+
+#[test]
+fn macros_are_checked_stored_read_back_compared_and_run_when_armed() {
+    alone("suprmotr::macros_are_checked_stored_read_back_compared_and_run_when_armed", LIMIT, || {
+        let folder = tempfile::tempdir().expect("a temporary folder can be made");
+        let mut bench = connected(&folder, &["MD3,GH", "MD9,MF"]);
+        bench.press("Macros");
+        bench.press("New macro file");
+        write(&mut bench, "macro shuttle = 3\n    MA FAR, QQ 5\n");
+        assert!(bench.sees("line 2") && bench.sees("There is no command QQ"));
+        assert!(!can_press(&bench, "Store macros on the board"), "it has errors");
+        let problem = bench.harness.query_all_by_label_contains("There is no command QQ").next();
+        problem.expect("it is listed").click();
+        bench.pass_ms(100);
+        assert!(bench.sees("line 2"), "the caret is where the mistake is");
+        let caret = bench.app().model.mcl.front().caret.range();
+        assert_eq!(caret.start, "macro shuttle = 3\n    MA FAR, ".len());
+
+        write(&mut bench, SHUTTLE);
+        assert!(bench.sees("No problems."));
+        bench.press("Compare macros with the board");
+        bench.pass_ms(6000);
+        assert!(bench.sees(
+            "Other commands on the board: 3 shuttle. Not on the board: 1 twice. On the board alone: 9."
+        ));
+        bench.press("Store macros on the board");
+        bench.pass_ms(4000);
+        assert!(bench.sees("Stored and read back: 2 macros."));
+        assert_eq!(commands_of(&bench, 3), ["MA2000", "WS300", "MA0", "WS300", "RP"]);
+        assert_eq!(
+            (commands_of(&bench, 1), commands_of(&bench, 9)),
+            (vec!["MC3".to_owned()], vec!["MF".to_owned()])
+        );
+
+        // What is read takes its names from the file in front.
+        bench.press("Read macros from the board");
+        bench.pass_ms(6000);
+        assert!(bench.sees("Read from the board: 3 macros."));
+        let read = bench.app().model.mcl.front().text.text();
+        assert!(
+            read.contains("macro shuttle = 3")
+                && read.contains("MC shuttle")
+                && read.contains("macro macro_9 = 9"),
+            "{read}"
+        );
+        bench.press("Compare macros with the board");
+        bench.pass_ms(6000);
+        assert!(bench.sees("The board and the file have the same: 3 macros."));
+
+        // A macro moves the motor: only when armed, and Stop ends it.
+        bench.app().model.front.suprmotr_mut().board.chosen = 3;
+        bench.pass_ms(100);
+        assert!(!can_press(&bench, "Run macro"));
+        bench.press("Arm");
+        bench.pass_ms(1000);
+        bench.press("Run macro");
+        bench.pass_ms(1000);
+        assert!(bench.sees("Macro 3 was called."));
+        let position = |bench: &Bench| bench.line.with(|bus| bus.suprmotrs()[0].position());
+        let mut furthest = 0;
+        for _ in 0..50 {
+            bench.pass_ms(100);
+            furthest = furthest.max(position(&bench));
+        }
+        assert!((1900..2100).contains(&furthest), "{furthest}");
+        assert!(bench.line.with(|bus| bus.suprmotrs()[0].is_in_macro()), "polling leaves it alone");
+        // A line would end it, so none is sent.
+        bench.press("Read macros from the board");
+        bench.pass_ms(1000);
+        assert!(bench.sees("A macro or a wait is in process, which a line would end."));
+        assert!(bench.line.with(|bus| bus.suprmotrs()[0].is_in_macro()));
+        bench.press("Stop All");
+        bench.pass_ms(2000);
+        assert!(!bench.line.with(|bus| bus.suprmotrs()[0].is_in_macro()));
+        let stopped = position(&bench);
+        bench.pass_ms(1000);
+        assert!((position(&bench) - stopped).abs() < 5);
+    });
+}
+
+#[test]
+fn a_macro_that_runs_at_power_up_is_stored_by_a_second_word_alone() {
+    alone("suprmotr::a_macro_that_runs_at_power_up_is_stored_by_a_second_word_alone", LIMIT, || {
+        let folder = tempfile::tempdir().expect("a temporary folder can be made");
+        let mut bench = connected(&folder, &[]);
+        bench.press("Macros");
+        bench.press("New macro file");
+        write(&mut bench, "macro home = 0\n    GH, WS 100\n");
+        assert!(bench.sees("it runs as soon as the controller has power"), "a warning in its place");
+        assert!(!can_press(&bench, "Store macros on the board"));
+        bench.press("Autostart");
+        bench.press("Store macros on the board");
+        bench.pass_ms(3000);
+        assert!(bench.sees("Stored and read back: 1 macro."));
+        assert_eq!(commands_of(&bench, 0), ["GH", "WS100"]);
+        // Another text has to be agreed to anew.
+        write(&mut bench, "macro home = 0\n    MA 500, WS 100\n");
+        assert!(!can_press(&bench, "Store macros on the board"));
+    });
+}
+
+fn type_in(bench: &mut Bench, text: &str) {
+    let field = bench.harness.get_by_label("Line");
+    field.focus();
+    field.type_text(text);
+    bench.harness.step();
+    bench.harness.key_press(egui::Key::Enter);
+    bench.pass_ms(1500);
+}
+
+#[test]
+fn the_terminal_tells_lines_and_characters_in_words_and_moves_nothing() {
+    alone("suprmotr::the_terminal_tells_lines_and_characters_in_words_and_moves_nothing", LIMIT, || {
+        let folder = tempfile::tempdir().expect("a temporary folder can be made");
+        let mut bench = connected(&folder, &["MD5,CN 5,WA 500,CF 5"]);
+        bench.press("Terminal");
+        type_in(&mut bench, "GP");
+        assert!(bench.sees("> GP") && bench.sees("Get P-Term"));
+        type_in(&mut bench, "%");
+        assert!(bench.sees("Trajectory complete"), "a status in words");
+        type_in(&mut bench, "TM5");
+        assert!(bench.sees("Wait 500 ms"), "a macro in words");
+        for moves in ["MR 500", "MC5", "RT"] {
+            type_in(&mut bench, moves);
+            assert!(bench.sees("not armed"), "{moves}");
+            bench.press("Clear");
+        }
+        assert_eq!(bench.line.with(|bus| bus.suprmotrs()[0].position()), 0);
+        type_in(&mut bench, "CN 3");
+        assert_eq!(outputs(&bench), 0x0004);
+        assert!(bench.sees("Channel On"));
     });
 }

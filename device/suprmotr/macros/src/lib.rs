@@ -6,6 +6,7 @@
 mod check;
 pub mod codes;
 mod format;
+mod index;
 mod lexer;
 mod parser;
 #[cfg(test)]
@@ -14,4 +15,5 @@ mod written;
 
 pub use check::{Checked, LONGEST_TEXT, Macro, check};
 pub use format::format;
+pub use index::MACROS;
 pub use written::written;

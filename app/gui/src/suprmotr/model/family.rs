@@ -2,8 +2,10 @@
 
 use brushwork_link::FamilyRef;
 use brushwork_link::device::{Addresses, ArmScope, Channel, Drive, Identity, Indicator, StatusReport};
+use brushwork_script::language::Grammar;
 use brushwork_suprmotr_client::channels::CHANNELS;
 use brushwork_suprmotr_client::{COMPUTED_TARGET, COMPUTED_VELOCITY, SUPRMOTR, SuprMotrFacts};
+use brushwork_suprmotr_macros::MACROS;
 use brushwork_suprmotr_wire::{Effect, Mnemonic, Radix};
 use brushwork_values::Motor;
 
@@ -48,13 +50,22 @@ impl Family for SuprMotr {
     }
 
     fn screens(&self, _identity: Option<&Identity>, _known: Known<'_>) -> Vec<Screen> {
-        vec![Screen::DeviceStatus, Screen::GeneralSettings, Screen::Position, Screen::Inputs]
+        vec![
+            Screen::DeviceStatus,
+            Screen::GeneralSettings,
+            Screen::Position,
+            Screen::Inputs,
+            Screen::MclEditor,
+            Screen::Terminal,
+        ]
     }
 
     #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn title(&self, screen: Screen) -> &'static str {
         match screen {
             Screen::Position => "Motion",
+            Screen::MclEditor => "Macros",
+            Screen::Terminal => "Terminal",
             Screen::Inputs => "Inputs and Outputs",
             other => other.title(),
         }
@@ -134,6 +145,10 @@ impl Family for SuprMotr {
 
     fn to_send(&self, scope: ArmScope, sliders: Sliders) -> Option<Drive> {
         (scope == ArmScope::Position).then(|| to_send(sliders.position.setpoints)).flatten()
+    }
+
+    fn grammar(&self) -> Option<&'static Grammar> {
+        Some(&MACROS)
     }
 
     fn shows_registers(&self, screen: Screen) -> bool {

@@ -1,4 +1,4 @@
-//! What a SuprMotr has of its own in the window: how far its slider goes, how far a step, and its inputs and outputs.
+//! What a SuprMotr has of its own in the window: how far its slider goes, how far a step, its inputs and outputs, and its macros.
 
 use std::time::Duration;
 
@@ -10,10 +10,14 @@ use crate::family::Own;
 use crate::model::Connection;
 use crate::model::setpoints::Setpoints;
 
+pub mod board;
 pub mod channels;
 pub mod family;
+pub mod terminal;
 
+use board::Board;
 use channels::Channels;
+use terminal::Terminal;
 
 /// The state of its screens.
 #[derive(Debug)]
@@ -24,17 +28,28 @@ pub struct SuprMotrConnection {
     pub step_counts: f64,
     /// Its inputs and outputs.
     pub channels: Channels,
+    /// The macros on it.
+    pub board: Board,
+    pub terminal: Terminal,
 }
 
 impl Default for SuprMotrConnection {
     fn default() -> Self {
-        Self { span_counts: 25_000.0, step_counts: 500.0, channels: Channels::default() }
+        Self {
+            span_counts: 25_000.0,
+            step_counts: 500.0,
+            channels: Channels::default(),
+            board: Board::default(),
+            terminal: Terminal::default(),
+        }
     }
 }
 
 impl Own for SuprMotrConnection {
     fn take(&mut self, event: &Event) -> bool {
-        self.channels.take(event)
+        self.terminal.note(event);
+        let is_of_board = self.board.take(event);
+        self.channels.take(event) || is_of_board
     }
 
     fn read(&mut self, identity: &Identity, now: Duration) -> Option<Request> {
@@ -49,11 +64,22 @@ impl Own for SuprMotrConnection {
         self.channels.not_sent();
     }
 
+    fn is_busy(&self) -> bool {
+        self.board.is_busy()
+    }
+
     fn forget_unit(&mut self) {
+        self.board.forget();
         self.channels.forget();
     }
 
+    fn not_sent(&mut self, id: u64) {
+        self.terminal.not_sent(id);
+    }
+
     fn link_ended(&mut self) {
+        self.terminal.link_ended();
+        self.board.forget();
         self.channels.forget();
     }
 }

@@ -1,14 +1,17 @@
-//! The screens of a SuprMotr: moves to a place, by slider and by steps, inputs and outputs; all else is shared.
+//! The screens of a SuprMotr: moves to a place, by slider and by steps, inputs and outputs, macros, terminal; all else is shared.
 
 mod channels;
+mod macros;
+mod terminal;
 
 use brushwork_link::device::{ArmScope, Channel};
 use brushwork_values::Motor;
-use egui::{Button, Ui};
+use egui::{Button, Context, Ui};
 
 use super::SuprMotr;
 use crate::command::Commands;
-use crate::model::{Model, Screen};
+use crate::family_action::Host;
+use crate::model::{ConnectionId, Model, Screen};
 use crate::screens::drive::{Output, drive_ui, motor_ui, on_release_ui, options_ui, pace_ui};
 use crate::screens::face::Face;
 use crate::screens::{not_connected_text, nothing_ui};
@@ -19,15 +22,24 @@ impl Face for SuprMotr {
         match model.screen {
             Screen::Position => motion_ui(ui, model, commands),
             Screen::Inputs => channels::channels_ui(ui, model, commands),
+            Screen::Terminal => terminal::terminal_ui(ui, model, commands),
             Screen::DeviceStatus
             | Screen::GeneralSettings
             | Screen::Pwm
             | Screen::Velocity
             | Screen::MclEditor
-            | Screen::Motion
-            | Screen::Terminal => return false,
+            | Screen::Motion => return false,
         }
         true
+    }
+
+    fn run_ui(&self, ui: &mut Ui, model: &mut Model, _commands: &mut Commands) -> bool {
+        macros::run_ui(ui, model);
+        true
+    }
+
+    fn go_on(&self, host: &mut dyn Host, connection: ConnectionId, ctx: &Context) {
+        macros::look_after_macros(host, connection, ctx);
     }
 }
 

@@ -8,8 +8,8 @@ use crate::messages::SuprMotrCauseMessage;
 use brushwork_link::device::controller::Line;
 use brushwork_link::exchange::{ExchangeError, Judgement, Outgoing};
 use brushwork_suprmotr_wire::{
-    Command, Mnemonic, Parsed, Progress, Reader, Received, Reports, Selection, echo_length, parse_line,
-    parse_report,
+    Command, Effect, Mnemonic, Parsed, Progress, Reader, Received, Reports, Selection, echo_length,
+    parse_line, parse_report,
 };
 use std::time::Duration;
 
@@ -36,8 +36,17 @@ impl Typed {
 
     /// Whether a command of the line runs now; those of a macro do when it is called.
     fn may_move(&self) -> bool {
-        self.parsed.line.defines.is_none()
-            && self.commands().iter().any(|command| command.row().effect.may_move())
+        self.moving().next().is_some()
+    }
+
+    /// Whether nothing of it moves but macros that it runs.
+    fn runs_macros_alone(&self) -> bool {
+        self.moving().all(|effect| effect == Effect::Run)
+    }
+
+    fn moving(&self) -> impl Iterator<Item = Effect> {
+        let effects = self.commands().iter().map(|command| command.row().effect);
+        effects.filter(|effect| self.parsed.line.defines.is_none() && effect.may_move())
     }
 }
 
@@ -125,7 +134,8 @@ fn gate(line: &Line<'_>, typed: &Typed) -> Result<(), ExchangeError> {
         });
     }
     if typed.may_move() {
-        if !line.permit().motion {
+        let may = line.permit().motion || line.permit().script && typed.runs_macros_alone();
+        if !may {
             return Err(ExchangeError::NotArmed { command: "a command that may move the motor".to_owned() });
         }
         line.motion_begins();

@@ -239,6 +239,21 @@ fn typed_bytes_go_out_as_one_whole_line_to_this_unit_or_not_at_all() {
     assert_eq!(link.bus().units[0].macros.len(), 1, "{}", link.sentences());
 }
 
+#[test]
+fn the_screen_of_macros_runs_macros_when_armed_and_moves_nothing_else() {
+    let mut link = Link::to(Unit::new(0));
+    link.ask(raw(b"MC1\r"));
+    assert!(link.sentences().contains("not armed") && link.lines().is_empty(), "{}", link.sentences());
+    link.ask(Request::Arm(ArmScope::Script));
+    link.forget();
+    for moves in [&b"MR100\r"[..], b"MC1,MR100\r", b"MN\r"] {
+        link.ask(raw(moves));
+    }
+    assert!(link.lines().is_empty(), "{:?}", link.lines());
+    link.ask(raw(b"MC1\r"));
+    assert_eq!(link.lines(), ["MC1"]);
+}
+
 /// What a user may ask for, in any order.
 #[derive(Clone, Debug)]
 enum Act {
