@@ -278,7 +278,7 @@ messages! {
         Loaded { settings: String, rest: Message } "{settings} loaded from EEPROM and read.{rest}",
         Absent { settings: String } " This firmware does not have {settings}.",
         Unread { settings: String } " {settings} could not be read; each row says why.",
-        Written { settings: String } "{settings} written and read back as wanted. Save to EEPROM to keep them over a power cycle.",
+        Written { settings: String } "{settings} written and read back as wanted. Save to EEPROM to keep what is written over a power cycle.",
         NotTaken { failed: usize, settings: String } "{failed} of {settings} did not take; their rows keep the change.",
         SomeCannotBe "Nothing was written: some of the changes cannot be.",
         NothingWritten { failure: Message } "Nothing was written. {failure}",
