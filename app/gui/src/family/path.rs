@@ -1,7 +1,8 @@
 //! The steps that lead from a controller that was just connected to an axis that is tuned, saved and backed up, as a family has them.
 
 use super::recipe::Goal;
-use crate::model::{Screen, Tab};
+use crate::model::drawer::Tab;
+use crate::model::screen::Screen;
 
 /// What is to be done in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

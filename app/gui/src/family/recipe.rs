@@ -9,7 +9,7 @@ use brushwork_link::settings::{Kind, SettingValue, SettingsImage, SettingsTable}
 use brushwork_link::{Channel, Message};
 
 use super::known::Known;
-use crate::model::IndicatorState;
+use crate::model::indicator::IndicatorState;
 
 /// What a person wants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
