@@ -32,3 +32,12 @@ messages! {
         Asymmetry { percent: f64 } "The directions differ by {percent:.0} %: something drags or pulls. The mean is offered.",
     }
 }
+
+messages! {
+    /// What became of a line that was typed for a controller, where no answer says it.
+    pub enum RawLineMessage {
+        Silence "nothing came back",
+        NotSent "Not sent: the link is busy. Send it again in a moment.",
+        LinkEnded "The link ended before an answer came.",
+    }
+}

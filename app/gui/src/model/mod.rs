@@ -37,6 +37,7 @@ pub mod position;
 pub mod pwm;
 pub mod qpps;
 pub mod raw;
+pub mod raw_lines;
 mod raw_wanted;
 pub mod readings;
 pub mod screen;

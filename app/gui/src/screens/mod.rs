@@ -28,6 +28,7 @@ mod progress;
 mod pwm;
 mod qpps;
 pub mod raw;
+pub(super) mod raw_lines;
 mod settings_file;
 mod split;
 mod start;

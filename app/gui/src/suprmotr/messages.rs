@@ -45,12 +45,3 @@ messages! {
         Entry { number: u8, name: String } "{number} {name}",
     }
 }
-
-messages! {
-    /// What is said of a line in the terminal.
-    pub enum TerminalMessage {
-        Silence "nothing came back",
-        NotSent "Not sent: the link is busy. Send it again in a moment.",
-        LinkEnded "The link ended before an answer came.",
-    }
-}

@@ -41,11 +41,11 @@ impl Own for MotorvatorConnection {
 
     fn link_ended(&mut self) {
         self.stepper.give_up();
-        self.terminal.link_ended();
+        self.terminal.lines.link_ended();
     }
 
     fn not_sent(&mut self, id: u64) {
-        self.terminal.not_sent(id);
+        self.terminal.lines.not_sent(id);
     }
 }
 

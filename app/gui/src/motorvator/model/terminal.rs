@@ -1,6 +1,5 @@
 //! The terminal: a line as it goes out, or bytes that become triplets, what it means, and what came back in words.
 
-use std::collections::VecDeque;
 use std::rc::Rc;
 
 use brushwork_link::device::{Event, RiskAccepted};
@@ -8,34 +7,25 @@ use brushwork_motorvator_client::{describe_received, describe_sent};
 use brushwork_motorvator_wire::{FRAME_BYTES, LINE_END, Order, line_of_host};
 
 use crate::command::Command;
+use crate::model::raw_lines::{RawLines, shown};
 use crate::motorvator::action::StartProgram;
 use crate::motorvator::messages::BoardMessage;
 
-/// Lines kept; the oldest go first.
-const KEPT: usize = 500;
 /// Answers to the terminal's lines begin with this number.
 const FIRST_ID: u64 = 1 << 44;
 
-/// One line with its answer.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Entry {
-    id: u64,
-    /// As it went out, without its end.
-    pub sent: String,
-    /// In words.
-    pub meaning: String,
-    /// What came back: as it came, and in words; or why nothing was sent.
-    pub answer: Option<Result<(String, String), String>>,
-}
-
 /// The state of the screen.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Terminal {
-    pub typed: String,
-    pub entries: VecDeque<Entry>,
+    pub lines: RawLines<()>,
     /// The user has the switch of the motors' power at hand, and may start what is in the board's memory.
     pub accepts_risk: bool,
-    asked: u64,
+}
+
+impl Default for Terminal {
+    fn default() -> Self {
+        Self { lines: RawLines::from_id(FIRST_ID), accepts_risk: false }
+    }
 }
 
 /// The line that a text stands for, its end included: G, H and I as they are, else bytes as numbers and texts in quotes.
@@ -84,38 +74,27 @@ fn bytes_of(typed: &str) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-fn shown(bytes: &[u8]) -> String {
-    let text: String = bytes.iter().copied().map(char::from).collect();
-    text.trim().replace("\r\n", " | ").replace(['\r', '\n'], " | ")
-}
-
 impl Terminal {
     /// What stands in the field means this, or is no line.
     ///
     /// # Errors
     /// A sentence: it is none.
     pub fn meaning(&self) -> Result<String, String> {
-        let line = line_of(&self.typed)?;
+        let line = line_of(&self.lines.typed)?;
         Ok(format!("{}: {}", shown(&line), describe_sent(&line).text))
     }
 
     /// Sends what stands in the field, if it is a line.
     pub fn send(&mut self) -> Option<Command> {
-        let bytes = line_of(&self.typed).ok()?;
-        self.typed.clear();
-        self.asked += 1;
-        let id = FIRST_ID + self.asked;
-        if self.entries.len() == KEPT {
-            self.entries.pop_front();
-        }
-        let meaning = describe_sent(&bytes).text;
-        self.entries.push_back(Entry { id, sent: shown(&bytes), meaning, answer: None });
-        Some(Command::Raw { id, bytes })
+        let bytes = line_of(&self.lines.typed).ok()?;
+        let (sent, meaning) = (shown(&bytes), describe_sent(&bytes).text);
+        Some(self.lines.send(bytes, (), sent, meaning))
     }
 
     /// Whether the line in the field starts the program in the board's memory.
     pub fn is_start(&self) -> bool {
-        line_of(&self.typed).is_ok_and(|line| Order::of_line(&line[..line.len() - 1]) == Some(Order::Go))
+        line_of(&self.lines.typed)
+            .is_ok_and(|line| Order::of_line(&line[..line.len() - 1]) == Some(Order::Go))
     }
 
     /// Starts the program in the board's memory, if its risk was accepted.
@@ -123,35 +102,13 @@ impl Terminal {
         if !std::mem::take(&mut self.accepts_risk) || !self.is_start() {
             return None;
         }
-        self.typed.clear();
+        self.lines.typed.clear();
         Some(Command::Own(Rc::new(StartProgram(RiskAccepted::by_the_user()))))
     }
 
     /// Takes note of an answer.
     pub fn note(&mut self, event: &Event) {
-        let Event::RawReply { id, result } = event else { return };
-        let Some(entry) = self.entries.iter_mut().find(|entry| entry.id == *id) else { return };
-        entry.answer = Some(match result {
-            Ok(reply) if reply.is_empty() => Ok((String::new(), "nothing came back".to_owned())),
-            Ok(reply) => Ok((shown(reply), describe_received(reply).text)),
-            Err(why) => Err(why.to_string()),
-        });
-    }
-
-    /// The line was not taken by the link.
-    pub fn not_sent(&mut self, id: u64) {
-        self.end(|entry| entry.id == id, "Not sent: the link is busy. Send it again in a moment.");
-    }
-
-    /// The link is gone: nothing more is answered.
-    pub fn link_ended(&mut self) {
-        self.end(|_| true, "The link ended before an answer came.");
-    }
-
-    fn end(&mut self, is_meant: impl Fn(&Entry) -> bool, why: &str) {
-        for entry in self.entries.iter_mut().filter(|entry| entry.answer.is_none() && is_meant(entry)) {
-            entry.answer = Some(Err(why.to_owned()));
-        }
+        self.lines.note(event, |(), reply| describe_received(reply).text);
     }
 }
 
@@ -184,11 +141,12 @@ mod tests {
 
     #[test]
     fn an_answer_is_told_as_it_came_and_in_words() {
-        let mut terminal = Terminal { typed: "I080001".to_owned(), ..Terminal::default() };
+        let mut terminal = Terminal::default();
+        "I080001".clone_into(&mut terminal.lines.typed);
         let Some(Command::Raw { id, bytes }) = terminal.send() else { panic!("it is a line") };
         assert_eq!(bytes, b"I080001\r");
         terminal.note(&Event::RawReply { id, result: Ok(b"073082080001002000000000000\r".to_vec()) });
-        let answer = terminal.entries[0].answer.clone().unwrap().unwrap();
+        let answer = terminal.lines.entries[0].answer.clone().unwrap().unwrap();
         assert_eq!(answer.1, "host library, version 2, answer 1");
     }
 }

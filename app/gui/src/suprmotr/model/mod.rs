@@ -74,11 +74,11 @@ impl Own for SuprMotrConnection {
     }
 
     fn not_sent(&mut self, id: u64) {
-        self.terminal.not_sent(id);
+        self.terminal.0.not_sent(id);
     }
 
     fn link_ended(&mut self) {
-        self.terminal.link_ended();
+        self.terminal.0.link_ended();
         self.board.forget();
         self.channels.forget();
     }
