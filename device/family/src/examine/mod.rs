@@ -11,6 +11,8 @@ pub use report::{
 };
 
 use brushwork_link::device::JobContext;
+use brushwork_link::exchange::ExchangeError;
+use brushwork_link::settings::is_final;
 use brushwork_link::{Failure, FamilyRef, Identity};
 use brushwork_values::Motor;
 use std::sync::{PoisonError, RwLock};
@@ -71,4 +73,16 @@ pub fn begun(examiner: &dyn Examiner, identity: &Identity) -> Examination {
         .map(|row| report::Unasked { what: row.what.to_owned(), why: row.why.to_owned() })
         .collect();
     examination
+}
+
+/// What an exchange of an examination gave; nothing where the unit does not answer it.
+///
+/// # Errors
+/// What ends the examination: the link is lost, or something more urgent came.
+pub fn if_answered<T>(result: Result<T, ExchangeError>) -> Result<Option<T>, ExchangeError> {
+    match result {
+        Ok(value) => Ok(Some(value)),
+        Err(error) if is_final(&error) => Err(error),
+        Err(_) => Ok(None),
+    }
 }

@@ -83,10 +83,8 @@ impl MindCarrier for MindJobCarrier<'_, '_> {
         let reply = self.context.transact_timed(number, &values).map_err(|error| reported(&error))?;
         let span = (reply.span.requested_at, reply.span.replied_at);
         let mask = match command {
-            Command::Read(mask) => *mask,
-            Command::ReadText(Part::Register(number)) => 1_u32.checked_shl(u32::from(*number)).unwrap_or(0),
             Command::ReadText(Part::All) => u32::MAX,
-            _ => 0,
+            command => command.named_registers(),
         };
         let is_vague = self.is_vague(mask != 0, span.1.saturating_sub(span.0));
         let answer = if mask == 0 {

@@ -419,22 +419,7 @@ impl MotionMind {
 
     /// Whether a read asks for a register that its firmware does not have.
     fn lacks(&self, command: &Command) -> bool {
-        let asked = match *command {
-            Command::Read(mask) => mask,
-            Command::ReadRegister(register) | Command::ReadText(Part::Register(register)) => {
-                1_u32.checked_shl(register.into()).unwrap_or(0)
-            }
-            Command::ReadText(Part::StatusBits | Part::FunctionBits | Part::All)
-            | Command::ChangeSpeed(_)
-            | Command::MoveToAbsolute(_)
-            | Command::MoveToRelative(_)
-            | Command::MoveAtVelocity(_)
-            | Command::Write { .. }
-            | Command::WriteStore { .. }
-            | Command::Restore
-            | Command::Reset => 0,
-        };
-        asked & self.config.lacks != 0
+        command.named_registers() & self.config.lacks != 0
     }
 
     fn address(&self) -> Address {

@@ -68,6 +68,25 @@ pub enum Effect {
 }
 
 impl Command {
+    /// The registers that a read names, as the mask of [`Command::Read`]; 0 for what names none, such as the read of all in text.
+    pub fn named_registers(&self) -> u32 {
+        match *self {
+            Self::Read(mask) => mask,
+            Self::ReadRegister(number) | Self::ReadText(Part::Register(number)) => {
+                1_u32.checked_shl(number.into()).unwrap_or(0)
+            }
+            Self::ReadText(Part::StatusBits | Part::FunctionBits | Part::All)
+            | Self::ChangeSpeed(_)
+            | Self::MoveToAbsolute(_)
+            | Self::MoveToRelative(_)
+            | Self::MoveAtVelocity(_)
+            | Self::Write { .. }
+            | Self::WriteStore { .. }
+            | Self::Restore
+            | Self::Reset => 0,
+        }
+    }
+
     /// What it may do to the motor.
     pub fn effect(&self) -> Effect {
         match self {

@@ -48,7 +48,9 @@ impl Macro {
         self.as_line().encode(Radix::Decimal)
     }
 
-    fn as_line(&self) -> Line {
+    /// The same as commands.
+    #[must_use]
+    pub fn as_line(&self) -> Line {
         Line { defines: Some(self.number), commands: self.commands.clone() }
     }
 }

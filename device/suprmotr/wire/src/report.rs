@@ -156,6 +156,19 @@ impl Report {
         })
     }
 
+    /// The macros that are listed in the report, as the lines that define them.
+    pub fn macros(&self) -> impl Iterator<Item = &Line> {
+        self.lines.iter().filter_map(|line| match line {
+            ReportLine::Macro(line) => Some(line),
+            ReportLine::Number { .. }
+            | ReportLine::Status(_)
+            | ReportLine::Analog { .. }
+            | ReportLine::Channels { .. }
+            | ReportLine::Channel { .. }
+            | ReportLine::Text(_) => None,
+        })
+    }
+
     /// The status, if it is in the report.
     pub fn status(&self) -> Option<Status> {
         self.lines.iter().find_map(|line| match line {

@@ -6,9 +6,9 @@ use std::time::{Duration, Instant};
 
 use brushwork_link::device::{Event, PollRate, Request};
 use brushwork_suprmotr_client::SuprMotrFacts;
-use brushwork_suprmotr_macros::{Checked, Macro, check, written};
+use brushwork_suprmotr_macros::{Checked, check, written};
 use brushwork_suprmotr_wire::{
-    Command, EXECUTE, Line, Mnemonic, Progress, Radix, Report, ReportLine, Single, operation, parse_report,
+    Command, EXECUTE, Line, Mnemonic, Progress, Radix, Report, Single, operation, parse_report,
 };
 
 use super::args::{ReadArgs, UploadArgs};
@@ -34,11 +34,11 @@ pub fn upload(args: &UploadArgs, out: &mut Output, interrupt: &Interrupt) -> Res
     let mut board = Board::connect(&args.connect, interrupt)?;
     board.check_idle()?;
     for known in &source.checked.macros {
-        let mut line = as_line(known).text(board.radix).into_bytes();
+        let mut line = known.as_line().text(board.radix).into_bytes();
         line.push(EXECUTE);
         board.exchange(line)?;
         let told = board.macros_told(known.number)?;
-        let is_there = told.iter().any(|line| *line == as_line(known));
+        let is_there = told.iter().any(|line| *line == known.as_line());
         if !is_there {
             let name = known.name.clone();
             return Err(Exit::NotTaken.saying(CliMacroMessage::NotStored { name, number: known.number }));
@@ -76,10 +76,6 @@ pub fn read(args: &ReadArgs, out: &mut Output, interrupt: &Interrupt) -> Result<
 
 fn names_in(args: &ReadArgs) -> Checked {
     brushwork_link::bounded::read_text(&args.file).map(|text| check(&text)).unwrap_or_default()
-}
-
-fn as_line(known: &Macro) -> Line {
-    Line { defines: Some(known.number), commands: known.commands.clone() }
 }
 
 /// A controller that is spoken to line by line.
@@ -121,16 +117,7 @@ impl<'a> Board<'a> {
         line.push(EXECUTE);
         let reply = self.exchange(line.clone())?;
         let report = self.report(&command, &line, &reply)?;
-        let is_macro = |line| match line {
-            ReportLine::Macro(line) => Some(line),
-            ReportLine::Number { .. }
-            | ReportLine::Status(_)
-            | ReportLine::Analog { .. }
-            | ReportLine::Channels { .. }
-            | ReportLine::Channel { .. }
-            | ReportLine::Text(_) => None,
-        };
-        Ok(report.lines.into_iter().filter_map(is_macro).collect())
+        Ok(report.macros().cloned().collect())
     }
 
     fn report(&self, command: &Command, sent: &[u8], reply: &[u8]) -> Result<Report, Exit> {

@@ -8,7 +8,7 @@ use brushwork_link::device::{Event, Identity, Request};
 use brushwork_suprmotr_client::SuprMotrFacts;
 use brushwork_suprmotr_macros::{Checked, Macro, check, written};
 use brushwork_suprmotr_wire::{
-    Command, EXECUTE, Line, Mnemonic, Progress, Radix, Report, ReportLine, Single, operation, parse_report,
+    Command, EXECUTE, Line, Mnemonic, Progress, Radix, Report, Single, operation, parse_report,
 };
 
 use super::channels::holds_lines;
@@ -130,7 +130,7 @@ impl Board {
             return;
         }
         let macros = self.file().filter(|_| job == Job::Store).map_or(&[][..], |file| &file.macros);
-        let left = macros.iter().map(as_line).collect();
+        let left = macros.iter().map(Macro::as_line).collect();
         self.work =
             Some(Work { job, next: Stage::Status, left, stored: 0, radix: Radix::Decimal, waiting: None });
     }
@@ -199,7 +199,7 @@ impl Board {
                 }
             }
             (Stage::Back(line), Some(report)) => {
-                if macros_of(report).contains(line) {
+                if report.macros().any(|told| told == line) {
                     work.stored += 1;
                     next_of(work)
                 } else {
@@ -208,7 +208,7 @@ impl Board {
                 }
             }
             (Stage::List, Some(report)) => {
-                let (told, job) = (macros_of(report), work.job.clone());
+                let (told, job) = (report.macros().cloned().collect::<Vec<_>>(), work.job.clone());
                 Err(self.listed(&told, &job))
             }
         };
@@ -255,10 +255,6 @@ impl Board {
     }
 }
 
-fn as_line(known: &Macro) -> Line {
-    Line { defines: Some(known.number), commands: known.commands.clone() }
-}
-
 /// The macro that is stored next; without one all are.
 fn next_of(work: &mut Work) -> Result<Stage, Outcome> {
     let stored = work.stored;
@@ -301,19 +297,6 @@ fn heard(stage: &Stage, radix: Radix, sent: &[u8], reply: &[u8]) -> Option<Repor
     }
 }
 
-fn macros_of(report: Report) -> Vec<Line> {
-    let is_macro = |line| match line {
-        ReportLine::Macro(line) => Some(line),
-        ReportLine::Number { .. }
-        | ReportLine::Status(_)
-        | ReportLine::Analog { .. }
-        | ReportLine::Channels { .. }
-        | ReportLine::Channel { .. }
-        | ReportLine::Text(_) => None,
-    };
-    report.lines.into_iter().filter_map(is_macro).collect()
-}
-
 fn counted(count: usize) -> String {
     if count == 1 { MacrosMessage::One.to_string() } else { MacrosMessage::Many { count }.to_string() }
 }
@@ -326,7 +309,7 @@ fn compared(told: &[Line], file: &Checked) -> String {
         found.map(|known| format!("{} {}", known.number, known.name)).collect::<Vec<_>>().join(", ")
     };
     let missing = names(&|known| on_board(known.number).is_none());
-    let other = names(&|known| on_board(known.number).is_some_and(|line| *line != as_line(known)));
+    let other = names(&|known| on_board(known.number).is_some_and(|line| *line != known.as_line()));
     let only: Vec<String> = told
         .iter()
         .filter_map(|line| line.defines)
@@ -352,7 +335,7 @@ mod tests {
     fn a_board_and_a_file_are_compared_macro_by_macro() {
         let file = check("macro a = 1\n    MA 5\nmacro b = 2\n    GH\nmacro c = 3\n    GH\n");
         assert!(file.is_right());
-        let lines: Vec<Line> = file.macros.iter().map(as_line).collect();
+        let lines: Vec<Line> = file.macros.iter().map(Macro::as_line).collect();
         assert_eq!(compared(&lines, &file), "The board and the file have the same: 3 macros.");
         let turned = Line { defines: Some(2), commands: lines[0].commands.clone() };
         let more = Line { defines: Some(9), commands: lines[0].commands.clone() };

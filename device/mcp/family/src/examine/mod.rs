@@ -9,7 +9,7 @@ mod motor;
 mod saving;
 pub mod table;
 
-use brushwork_family::examine::{Examination, Examiner, NotAskable, Step};
+use brushwork_family::examine::{Examination, Examiner, NotAskable, Step, if_answered};
 use brushwork_family::messages::ExamineActMessage;
 use brushwork_link::device::{Heard, Inquiry, JobContext, Leave};
 use brushwork_link::exchange::ExchangeError;
@@ -75,20 +75,6 @@ fn with_crc(mut bytes: Vec<u8>) -> Vec<u8> {
 /// Asks in bytes, once.
 fn hear(context: &mut JobContext<'_>, bytes: &[u8], leave: Leave) -> Asked<Heard> {
     context.inquire(&Inquiry { bytes, leave, retries: 0 })
-}
-
-/// Whether an error ends the examination; all others are answers.
-fn is_final(error: &ExchangeError) -> bool {
-    error.is_link_lost() || error.interruption().is_some()
-}
-
-/// What an exchange gave; nothing where the unit does not answer it.
-fn if_answered<T>(result: Asked<T>) -> Asked<Option<T>> {
-    match result {
-        Ok(value) => Ok(Some(value)),
-        Err(error) if is_final(&error) => Err(error),
-        Err(_) => Ok(None),
-    }
 }
 
 /// "1, 5 and 7", or "none".

@@ -4,7 +4,7 @@ use crate::controller::registers::mask;
 use crate::controller::speaker::Speaker;
 use brushwork_link::device::controller::Line;
 use brushwork_link::exchange::{ExchangeError, Span, Tries};
-use brushwork_motion_mind_wire::{Command, Part, Reply, register, register_number as number};
+use brushwork_motion_mind_wire::{Command, Reply, register, register_number as number};
 use std::time::Duration;
 
 impl Speaker {
@@ -54,23 +54,9 @@ fn ask(
     }
 }
 
-/// The registers that a read asks for, as the mask of READ. In text, a read of all is answered with those that there are.
+/// The registers that a read names; `None` where it names none that are known.
 fn wanted(command: &Command) -> Option<u32> {
-    match command {
-        Command::Read(registers) => Some(*registers),
-        Command::ReadRegister(register) | Command::ReadText(Part::Register(register)) => {
-            Some(mask(&[*register])).filter(|mask| *mask != 0)
-        }
-        Command::ReadText(Part::StatusBits | Part::FunctionBits | Part::All)
-        | Command::ChangeSpeed(_)
-        | Command::MoveToAbsolute(_)
-        | Command::MoveToRelative(_)
-        | Command::MoveAtVelocity(_)
-        | Command::Write { .. }
-        | Command::WriteStore { .. }
-        | Command::Restore
-        | Command::Reset => None,
-    }
+    Some(command.named_registers()).filter(|registers| *registers != 0)
 }
 
 fn single(command: &Command) -> Option<u8> {

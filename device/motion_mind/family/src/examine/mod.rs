@@ -2,7 +2,9 @@
 
 pub mod table;
 
-use brushwork_family::examine::{CommandFound, Examination, Examiner, NotAskable, Step, not_asked};
+use brushwork_family::examine::{
+    CommandFound, Examination, Examiner, NotAskable, Step, if_answered, not_asked,
+};
 use brushwork_family::messages::ExamineActMessage;
 use brushwork_link::capability::Presence;
 use brushwork_link::device::{Heard, Inquiry, JobContext, Leave};
@@ -270,13 +272,4 @@ fn question(context: &JobContext<'_>, command: &Command) -> Option<Vec<u8>> {
 
 fn hear(context: &mut JobContext<'_>, bytes: &[u8], leave: Leave) -> Asked<Heard> {
     context.inquire(&Inquiry { bytes, leave, retries: 0 })
-}
-
-/// What an exchange gave; nothing where the unit does not answer it.
-fn if_answered<T>(result: Asked<T>) -> Asked<Option<T>> {
-    match result {
-        Ok(value) => Ok(Some(value)),
-        Err(error) if error.is_link_lost() || error.interruption().is_some() => Err(error),
-        Err(_) => Ok(None),
-    }
 }
