@@ -146,7 +146,8 @@ pub fn reported(error: &ExchangeError) -> AxisError {
             ExchangeError::TimedOut { .. }
             | ExchangeError::BadCrc { .. }
             | ExchangeError::BadAcknowledgement { .. }
-            | ExchangeError::Malformed { .. } => AxisError::NoReply,
+            | ExchangeError::Malformed { .. }
+            | ExchangeError::NotUnderstood { .. } => AxisError::NoReply,
             // Whatever the tuner commands is absolute and at once, so that it may come twice.
             ExchangeError::MayHaveRun { cause } => reported(cause),
             other => AxisError::Refused(other.to_string()),

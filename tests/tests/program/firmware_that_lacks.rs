@@ -35,7 +35,8 @@ impl Lacking {
             _ => None,
         };
         let arguments = ["--model", model, "--generation", generation];
-        Self::behind(&arguments, Box::new(move |request| command_of(request).filter(|it| lacks.contains(it))))
+        let lacking = move |request: &[u8]| command_of(request).filter(|it| lacks.contains(it));
+        Self::behind(&arguments, Box::new(lacking), b"")
     }
 
     /// A Motion Mind that answers no read in which one of the registers is.
@@ -49,10 +50,25 @@ impl Lacking {
             let asked = registers(request);
             lacks.iter().copied().find(|register| asked >> register & 1 == 1)
         };
-        Self::behind(&["--model", "motion-mind-3", "--mode", "4"], Box::new(lacking))
+        Self::behind(&["--model", "motion-mind-3", "--mode", "4"], Box::new(lacking), b"")
     }
 
-    fn behind(arguments: &[&str], lacks: Lacks) -> Self {
+    /// A Motion Mind in text that says of one register that it is none.
+    fn motion_mind_in_text(lacks: u8) -> Self {
+        let lacking = move |request: &[u8]| {
+            let line = String::from_utf8_lossy(request);
+            let register = line.strip_prefix('R')?.split_whitespace().nth(1)?.parse().ok()?;
+            (register == lacks).then_some(register)
+        };
+        Self::behind(
+            &["--model", "motion-mind-3", "--protocol", "ascii"],
+            Box::new(lacking),
+            b"BAD COMMAND\r\n",
+        )
+    }
+
+    /// What is lacking is answered with `answer`.
+    fn behind(arguments: &[&str], lacks: Lacks, answer: &'static [u8]) -> Self {
         let mut sim = Program::start(BRUSHWORK, &[&["sim", "--tcp", "127.0.0.1:0"], arguments].concat());
         let greeting = sim.wait_for("tcp:127.0.0.1:", LIMIT);
         let behind = greeting.rsplit("tcp:").next().unwrap_or_default().to_owned();
@@ -69,8 +85,8 @@ impl Lacking {
                 let _ = client.set_nodelay(true).and_then(|()| unit.set_nodelay(true));
                 let back = client.try_clone().and_then(|to| Ok((unit.try_clone()?, to)));
                 let (from, to) = back.expect("a connection can be held twice");
-                named("lacking line back", move || pass(from, to, &|_| None, &Mutex::default()));
-                pass(client, unit, &lacks, &counts);
+                named("lacking line back", move || pass(from, to, &|_| None, b"", &Mutex::default()));
+                pass(client, unit, &lacks, answer, &counts);
             }
         });
         Self { _sim: sim, target, asked }
@@ -96,6 +112,7 @@ fn pass(
     mut from: TcpStream,
     mut to: TcpStream,
     lacks: &dyn Fn(&[u8]) -> Option<u8>,
+    answer: &[u8],
     asked: &Mutex<BTreeMap<u8, usize>>,
 ) {
     let mut bytes = [0; 1024];
@@ -106,6 +123,9 @@ fn pass(
         match lacks(&bytes[..count]) {
             Some(lacking) => {
                 *asked.lock().expect("no test has failed with it").entry(lacking).or_insert(0) += 1;
+                if from.write_all(answer).is_err() {
+                    break;
+                }
             }
             None if to.write_all(&bytes[..count]).is_err() => break,
             None => {}
@@ -195,5 +215,21 @@ fn a_register_that_a_motion_mind_lacks_keeps_no_other_from_being_read() {
     assert!(readings["m1_position"].is_number() && readings["m1_current"].is_number(), "{json}");
     assert!(readings["temperature_1"].is_null(), "{json}");
     let text = unit.run(&["status"]).stdout.join("\n");
+    assert!(text.contains("This firmware does not have: THERMISTOR ("), "{text}");
+}
+
+#[test]
+fn a_register_that_a_motion_mind_calls_no_command_in_text_is_lacking_and_no_damaged_reply() {
+    let unit = Lacking::motion_mind_in_text(register_number::THERMISTOR);
+    // Text reads most registers with one line for all; an examination asks for each.
+    let examined = unit.run(&["examine"]);
+    println!("asked at first: {:?}", unit.take_asked());
+    assert_eq!(examined.status.code(), Some(0), "{examined:?}");
+    let told = [examined.stdout, examined.stderr].concat().join("\n");
+    let row = told.lines().find(|line| line.contains("register THERMISTOR")).expect("it is told");
+    assert!(row.contains("absent") && !told.contains("makes no sense"), "{told}");
+    let status = unit.run(&["status"]);
+    assert_eq!(unit.take_asked(), BTreeMap::new(), "what is known to be lacking is not asked for");
+    let text = status.stdout.join("\n");
     assert!(text.contains("This firmware does not have: THERMISTOR ("), "{text}");
 }

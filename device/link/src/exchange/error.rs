@@ -49,6 +49,14 @@ pub enum ExchangeError {
         /// Requests sent.
         tries: Tries,
     },
+    /// The unit says that it does not know what it was asked.
+    #[error("{what} ({tries})")]
+    NotUnderstood {
+        /// What it said, and to what.
+        what: String,
+        /// Requests sent.
+        tries: Tries,
+    },
     /// The request was sent once, was not confirmed, and must not be sent twice.
     #[error(
         "{cause}; the command may have been carried out, and was not sent again since that could do it twice"
@@ -159,6 +167,7 @@ impl ExchangeError {
             | Self::BadCrc { .. }
             | Self::BadAcknowledgement { .. }
             | Self::Malformed { .. }
+            | Self::NotUnderstood { .. }
             | Self::Absent { .. }
             | Self::Untold { .. } => true,
             Self::Refused { is_absent, .. } => *is_absent,
@@ -209,7 +218,8 @@ impl ExchangeError {
             Self::TimedOut { .. }
             | Self::BadCrc { .. }
             | Self::BadAcknowledgement { .. }
-            | Self::Malformed { .. } => RemedyMessage::CheckLine,
+            | Self::Malformed { .. }
+            | Self::NotUnderstood { .. } => RemedyMessage::CheckLine,
             Self::MayHaveRun { .. } => RemedyMessage::LookAtMotor,
             Self::Interrupted { .. } => RemedyMessage::TryWhenReady,
             Self::NotArmed { .. } => RemedyMessage::ArmFirst,

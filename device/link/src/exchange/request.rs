@@ -49,6 +49,8 @@ pub enum Fault {
     },
     /// An acknowledgement was due.
     Acknowledgement(u8),
+    /// The unit says that it does not know the request.
+    NotUnderstood(String),
     /// Anything else.
     Malformed(String),
 }
@@ -58,6 +60,7 @@ impl Fault {
         match self {
             Self::Crc { expected, got } => ExchangeError::BadCrc { expected, got, tries },
             Self::Acknowledgement(got) => ExchangeError::BadAcknowledgement { got, tries },
+            Self::NotUnderstood(what) => ExchangeError::NotUnderstood { what, tries },
             Self::Malformed(what) => ExchangeError::Malformed { what, tries },
         }
     }

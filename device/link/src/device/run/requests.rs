@@ -426,6 +426,7 @@ fn is_unsure(error: &ExchangeError) -> bool {
             | ExchangeError::BadCrc { .. }
             | ExchangeError::BadAcknowledgement { .. }
             | ExchangeError::Malformed { .. }
+            | ExchangeError::NotUnderstood { .. }
             | ExchangeError::MayHaveRun { .. }
     );
     sent && !error.is_link_lost() && error.interruption().is_none()

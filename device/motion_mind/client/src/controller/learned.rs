@@ -40,17 +40,27 @@ fn ask(
             Ok((reply, span))
         }
         // While the motor may run, nothing is asked only in order to learn.
-        Err(ExchangeError::TimedOut { heard: 0, waited, tries }) if !line.permit().motion => {
-            let silent = ExchangeError::TimedOut { heard: 0, waited, tries };
+        Err(error) => {
+            let Some(tries) = in_vain(&error).filter(|_| !line.permit().motion) else { return Err(error) };
             if !is_there(speaker, line)? {
-                return Err(silent);
+                return Err(error);
             }
             match single(&narrowed) {
-                Some(register) => Err(judge(speaker, line, register, tries).unwrap_or(silent)),
-                None => one_by_one(speaker, line, &narrowed).unwrap_or(Err(silent)),
+                Some(register) => Err(judge(speaker, line, register, tries).unwrap_or(error)),
+                None => one_by_one(speaker, line, &narrowed).unwrap_or(Err(error)),
             }
         }
-        Err(error) => Err(error),
+    }
+}
+
+/// How often a read was asked that nothing came to, or by text the word that it is none.
+#[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
+fn in_vain(error: &ExchangeError) -> Option<Tries> {
+    match error {
+        ExchangeError::TimedOut { heard: 0, tries, .. } | ExchangeError::NotUnderstood { tries, .. } => {
+            Some(*tries)
+        }
+        _ => None,
     }
 }
 

@@ -178,7 +178,7 @@ impl Speaker {
             // The command is one, so that something of it was lost, or something stood in the line before it.
             Progress::Done { reply: Reply::NotUnderstood, .. } => {
                 let what = format!("it answered \"BAD COMMAND\" to {}", title(command));
-                Judgement::Bad(Fault::Malformed(what))
+                Judgement::Bad(Fault::NotUnderstood(what))
             }
             Progress::Done { reply: done, used } => {
                 *reply = done;
