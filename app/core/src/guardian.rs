@@ -24,6 +24,9 @@ pub const COMMAND: &str = "guardian";
 const LIFE_INTERVAL: Duration = Duration::from_millis(40);
 /// A program that says nothing for so long while motors may move stands still: the dead-man inside of it, 250 ms, and 100 ms more.
 const STANDS_STILL: Duration = Duration::from_millis(350);
+/// How often it is looked at whether the program dies. Its pipe closes only when the last of its threads is gone, which takes seconds on a busy
+/// computer; so soon after the kill it shows in what the system says of it.
+const LOOK_INTERVAL: Duration = Duration::from_millis(20);
 /// A wait that took so much longer than it should was this process's own standing still.
 const OWN_LATENESS: Duration = Duration::from_millis(100);
 /// How long a killed program is waited for. From the kill on it runs no code of its own, though on a busy computer its threads may take
@@ -166,8 +169,14 @@ impl Drop for Process {
     }
 }
 
-/// What the second process does for all its life. `end_first` ends the first one, if it is there still.
-pub fn stand_guard(orders: impl Read + Send + 'static, mut line: impl Write, end_first: impl FnOnce()) {
+/// What the second process does for all its life. `is_dying` tells whether the first one runs no code of its own any more, where the system says
+/// so before its pipe closes; `end_first` ends it, if it is there still.
+pub fn stand_guard(
+    orders: impl Read + Send + 'static,
+    mut line: impl Write,
+    is_dying: impl Fn() -> bool,
+    end_first: impl FnOnce(),
+) {
     let (sender, inbox) = bounded(WAITING_ORDERS);
     let read = move || {
         let lines = BufReader::new(orders).lines().map_while(Result::ok);
@@ -180,19 +189,29 @@ pub fn stand_guard(orders: impl Read + Send + 'static, mut line: impl Write, end
     // Without the thread nothing is heard, and the channel is closed as if the program had died.
     let _reader = std::thread::Builder::new().name("orders".to_owned()).spawn(read);
     let (mut held, mut is_moving) = (None, false);
+    // How long nothing has come, of this process's own time.
+    let mut silent = Duration::ZERO;
     loop {
         let waits_from = Instant::now();
         let order = match held.is_some() && is_moving {
-            true => inbox.recv_timeout(STANDS_STILL),
+            true => inbox.recv_timeout(LOOK_INTERVAL),
             false => inbox.recv().map_err(|_| RecvTimeoutError::Disconnected),
         };
+        if order.is_ok() {
+            silent = Duration::ZERO;
+        }
         match order {
             Ok(Order::Hold { writes, gap_ms }) => held = Some((writes, Duration::from_millis(gap_ms))),
             Ok(Order::Release) => held = None,
             Ok(Order::Moving(moving)) => is_moving = moving,
             Ok(Order::Lives) => {}
             Err(RecvTimeoutError::Timeout) => {
-                if waits_from.elapsed() > STANDS_STILL + OWN_LATENESS {
+                if is_dying() {
+                    break;
+                }
+                let waited = waits_from.elapsed();
+                silent += if waited > LOOK_INTERVAL + OWN_LATENESS { LOOK_INTERVAL } else { waited };
+                if silent < STANDS_STILL {
                     continue;
                 }
                 end_first();
@@ -246,7 +265,7 @@ mod tests {
 
     fn written(orders: &[Order]) -> Vec<u8> {
         let mut line = Vec::new();
-        stand_guard(io::Cursor::new(lines(orders)), &mut line, || panic!("it is dead already"));
+        stand_guard(io::Cursor::new(lines(orders)), &mut line, || false, || panic!("it is dead already"));
         line
     }
 
@@ -270,7 +289,17 @@ mod tests {
         let (orders, mut tell) = io::pipe().unwrap();
         tell.write_all(&lines(&[hold(1), Order::Moving(true), Order::Lives])).unwrap();
         let mut line = Vec::new();
-        stand_guard(orders, &mut line, || drop(tell));
+        stand_guard(orders, &mut line, || false, || drop(tell));
         assert_eq!(line, [1, 1, 0xff].repeat(STOP_AT.len()));
+    }
+
+    #[test]
+    fn a_program_that_is_seen_to_die_is_stopped_for_before_its_pipe_closes() {
+        let (orders, mut tell) = io::pipe().unwrap();
+        tell.write_all(&lines(&[hold(1), Order::Moving(true)])).unwrap();
+        let mut line = Vec::new();
+        stand_guard(orders, &mut line, || true, || panic!("whoever dies needs no end"));
+        assert_eq!(line, [1, 1, 0xff].repeat(STOP_AT.len()));
+        drop(tell);
     }
 }
