@@ -94,6 +94,7 @@ messages! {
         NotAllThere { addresses: String, place: String } "Nothing was moved: nobody answers at {addresses} on {place}. All that are named have to be there to move together.",
         Of { unit: String, sentence: String } "{unit}: {sentence}",
         Silent { addresses: String, place: String } "Nobody answers at {addresses} on {place}.",
+        NotBegun { units: String } "Not begun on {units}, since it failed before.",
         NotTillTheEnd { units: String, of: usize } "Not done to the end on {units}, of {of} asked for.",
         NoneWritten "Nothing was written to any of them, since this was not to be had from all. Leave out who cannot take it, by --address.",
         WriteToAll { count: usize } "Write these changes, each to its own of the {count} controllers?",

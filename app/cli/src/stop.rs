@@ -226,18 +226,11 @@ fn wait_for_report(device: &DeviceHandle) -> Result<StopReport, Exit> {
     Err(Exit::Refused.saying(CliLinkMessage::NotConfirmed { seconds: STOP_LIMIT.as_secs() }))
 }
 
-/// Stops what a command has set in motion, and says what is not plainly stopped. A signal does not cut this short.
+/// Stops what a command has set in motion on several links at a time, each with its units, and says what is not plainly stopped. A signal does
+/// not cut this short.
 ///
 /// # Errors
-/// The stop was not confirmed, or a loop was left off, so that nothing holds the motor now.
-pub fn stop_driven(device: &DeviceHandle, identity: &Identity) -> Result<(), Exit> {
-    stop_all_driven(&[(device, std::slice::from_ref(identity))])
-}
-
-/// The same of several links at a time, each with its units.
-///
-/// # Errors
-/// As for [`stop_driven`], of the worst.
+/// The stop was not confirmed, or a loop was left off, so that nothing holds the motor now; of the worst.
 pub fn stop_all_driven(links: &[(&DeviceHandle, &[Identity])]) -> Result<(), Exit> {
     // Each has its stop before any is waited for.
     links.iter().for_each(|(device, _)| device.stop_all());

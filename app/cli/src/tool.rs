@@ -28,9 +28,20 @@ impl Tool {
         about: &'static str,
         run: fn(&A, &mut Output, &Interrupt) -> Result<Exit, Exit>,
     ) -> Self {
+        Self::of_typed(name, place, about, move |args: A, _, out, interrupt| run(&args, out, interrupt))
+    }
+
+    /// The same for one that has a look at what was typed, too.
+    #[must_use]
+    pub fn of_typed<A: Args>(
+        name: &'static str,
+        place: usize,
+        about: &'static str,
+        run: impl Fn(A, &ArgMatches, &mut Output, &Interrupt) -> Result<Exit, Exit> + 'static,
+    ) -> Self {
         let command = A::augment_args(Command::new(name)).about(about).long_about(None);
         let run = move |arguments: &ArgMatches, out: &mut Output, interrupt: &Interrupt| {
-            run(&typed(arguments), out, interrupt)
+            run(typed(arguments), arguments, out, interrupt)
         };
         Self { command: command.display_order(place), run: Box::new(run) }
     }

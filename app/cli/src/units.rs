@@ -8,43 +8,62 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use brushwork_link::ConnectTarget;
-use clap::ArgMatches;
+use clap::{ArgMatches, Args};
 use serde_json::{Value, json};
 
 use super::addresses::Line;
 use super::args::Command;
 use super::client;
 use super::messages::CliUnitsMessage;
-use super::settings::args::{Round, SettingsAction, WriteHow};
+use super::settings::args::{Round, WriteHow};
 use super::settings::ask;
+use super::tool::Tool;
 use super::{ConnectArgs, Exit, Interrupt, Output, dispatch, say};
 
 /// How long one look for an answer waits.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// Runs a command, once for each of the controllers that it is to go to.
+/// A command that may go to several controllers, one by one.
+pub trait PerUnit {
+    /// Where its controller is; `None` for what goes to one alone, has no controller, or has its own way with several.
+    fn connect_mut(&mut self) -> Option<&mut ConnectArgs>;
+
+    /// How it writes settings, if it does.
+    fn how_mut(&mut self) -> Option<&mut WriteHow> {
+        None
+    }
+
+    /// The files that it writes of one controller.
+    fn files_mut(&mut self) -> Vec<&mut PathBuf> {
+        Vec::new()
+    }
+
+    /// Whether it is done to the others where one of them failed.
+    fn goes_on(&self) -> bool {
+        true
+    }
+
+    /// Does it to the controller that its arguments name.
+    ///
+    /// # Errors
+    /// Says on standard error what went wrong and gives the exit code.
+    fn run(&self, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit>;
+}
+
+/// Runs a command of every program, once for each of the controllers that it is to go to.
 pub fn run(
     mut command: Command,
     typed: &ArgMatches,
     out: &mut Output,
     interrupt: &Interrupt,
 ) -> Result<Exit, Exit> {
-    let together = together(&mut command);
-    let several = connect_of(&mut command).filter(|args| together.is_some() || args.is_several());
-    let Some(args) = several.map(|args| args.clone()) else {
-        return dispatch(&command, typed, out, interrupt);
+    let Some(together) = together(&mut command) else {
+        return each(Shared { command, typed }, typed, out, interrupt);
     };
-    let units = units(&args, interrupt)?;
-    let files = files_of(&mut command).into_iter().map(|file| file.clone()).collect();
-    let is_json = together.is_some() || asks_for_json(typed);
-    let mut several = Several { command, typed, units, files, is_json, objects: Vec::new() };
-    let Some(together) = together else {
-        let exit = several.run(out, interrupt);
-        if is_json {
-            out.json(&several.objects)?;
-        }
-        return exit;
-    };
+    let Command::Status(args) = &command else { return Err(Exit::Failed) };
+    let units = units(&args.connect, interrupt)?;
+    let command = Shared { command, typed };
+    let mut several = Several { command, units, files: Vec::new(), is_json: true, objects: Vec::new() };
     loop {
         several.objects.clear();
         let begun = Instant::now();
@@ -59,6 +78,32 @@ pub fn run(
             return Err(Exit::Interrupted);
         }
     }
+}
+
+/// A command of a family that may go to several controllers.
+pub fn tool<A: Args + PerUnit>(name: &'static str, place: usize, about: &'static str) -> Tool {
+    Tool::of_typed(name, place, about, |args: A, typed, out, interrupt| each(args, typed, out, interrupt))
+}
+
+/// Does a command once for each of the controllers that it is to go to.
+pub fn each(
+    mut command: impl PerUnit,
+    typed: &ArgMatches,
+    out: &mut Output,
+    interrupt: &Interrupt,
+) -> Result<Exit, Exit> {
+    let Some(args) = command.connect_mut().filter(|args| args.is_several()).map(|args| args.clone()) else {
+        return command.run(out, interrupt);
+    };
+    let units = units(&args, interrupt)?;
+    let files = command.files_mut().into_iter().map(|file| file.clone()).collect();
+    let is_json = asks_for_json(typed);
+    let mut several = Several { command, units, files, is_json, objects: Vec::new() };
+    let exit = several.run(out, interrupt);
+    if is_json {
+        out.json(&several.objects)?;
+    }
+    exit
 }
 
 /// How a status of several is told in one table.
@@ -82,7 +127,7 @@ fn together(command: &mut Command) -> Option<Together> {
 }
 
 /// A row for each controller, with what it reports or why it did not.
-fn print_together(several: &Several<'_>, out: &mut Output) -> Result<(), Exit> {
+fn print_together(several: &Several<impl PerUnit>, out: &mut Output) -> Result<(), Exit> {
     const FIGURES: [(&str, &str, usize); 6] = [
         ("BATTERY V", "main_battery", 1),
         ("LOGIC V", "logic_battery", 1),
@@ -129,9 +174,8 @@ struct Unit {
     missing: Option<Exit>,
 }
 
-struct Several<'a> {
-    command: Command,
-    typed: &'a ArgMatches,
+struct Several<C> {
+    command: C,
     units: Vec<Unit>,
     /// The files that the command was given to write.
     files: Vec<PathBuf>,
@@ -139,9 +183,9 @@ struct Several<'a> {
     objects: Vec<Value>,
 }
 
-impl Several<'_> {
+impl<C: PerUnit> Several<C> {
     fn run(&mut self, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
-        let Some(how) = how_of(&mut self.command) else { return self.round(out, interrupt) };
+        let Some(how) = self.command.how_mut() else { return self.round(out, interrupt) };
         how.several = true;
         if how.dry_run {
             return self.round(out, interrupt);
@@ -157,7 +201,7 @@ impl Several<'_> {
         self.set_round(Round::Review);
         let exit = self.round(out, interrupt)?;
         self.set_round(Round::Agreed);
-        let (saves, yes) = how_of(&mut self.command).map_or((false, false), |how| (how.save, how.yes));
+        let (saves, yes) = self.command.how_mut().map_or((false, false), |how| (how.save, how.yes));
         let count = self.units.len();
         if !matches!(exit, Exit::Done | Exit::Different) {
             return Ok(Some(exit.saying(CliUnitsMessage::NoneWritten)));
@@ -176,7 +220,7 @@ impl Several<'_> {
     }
 
     fn set_round(&mut self, round: Round) {
-        if let Some(how) = how_of(&mut self.command) {
+        if let Some(how) = self.command.how_mut() {
             how.round = round;
         }
     }
@@ -196,6 +240,12 @@ impl Several<'_> {
             if exit == Exit::Interrupted {
                 break;
             }
+            let left = &self.units[index + 1..];
+            if !failed.is_empty() && !self.command.goes_on() && !left.is_empty() {
+                let left: Vec<&str> = left.iter().map(|unit| unit.name.as_str()).collect();
+                say(CliUnitsMessage::NotBegun { units: left.join(", ") });
+                break;
+            }
         }
         if !failed.is_empty() {
             say(CliUnitsMessage::NotTillTheEnd { units: failed.join(", "), of: self.units.len() });
@@ -209,10 +259,10 @@ impl Several<'_> {
         if !self.is_json {
             out.line(head)?;
         }
-        if let Some(args) = connect_of(&mut self.command) {
+        if let Some(args) = self.command.connect_mut() {
             args.clone_from(&unit.args);
         }
-        for (file, whole) in files_of(&mut self.command).into_iter().zip(&self.files) {
+        for (file, whole) in self.command.files_mut().into_iter().zip(&self.files) {
             *file = tagged(whole, &unit.tag);
         }
         if self.is_json {
@@ -220,7 +270,7 @@ impl Several<'_> {
         }
         let ended = match unit.missing {
             Some(exit) => Err(exit.saying(CliUnitsMessage::NoneAt { place: unit.place.clone() })),
-            None => dispatch(&self.command, self.typed, out, interrupt),
+            None => self.command.run(out, interrupt),
         };
         let exit = ended.unwrap_or_else(|exit| exit);
         if self.is_json {
@@ -272,43 +322,61 @@ fn units(args: &ConnectArgs, interrupt: &Interrupt) -> Result<Vec<Unit>, Exit> {
     Ok(units)
 }
 
-/// Where a command has its controller, if it goes to several one by one.
-fn connect_of(command: &mut Command) -> Option<&mut ConnectArgs> {
-    match command {
-        Command::Status(args) if !args.watch => Some(&mut args.connect),
-        Command::Examine(args) => Some(&mut args.connect),
-        Command::Settings(args) => args.action.connect_mut(),
-        Command::Tune(args) => args.command.run_mut().map(|run| &mut run.connect),
-        // These go to one, have no controller, or have their own way with several.
-        Command::Status(_)
-        | Command::List(_)
-        | Command::Nodes(_)
-        | Command::Address(_)
-        | Command::Drive(_)
-        | Command::Stop(_)
-        | Command::Sim(_)
-        | Command::Terminal(_)
-        | Command::Protocol(_)
-        | Command::Monitor(_) => None,
-    }
+/// A command that every program has, with what was typed.
+struct Shared<'a> {
+    command: Command,
+    typed: &'a ArgMatches,
 }
 
-/// How a command writes settings, if it does.
-fn how_of(command: &mut Command) -> Option<&mut WriteHow> {
-    let Command::Settings(args) = command else { return None };
-    args.action.how_mut()
-}
+impl PerUnit for Shared<'_> {
+    fn connect_mut(&mut self) -> Option<&mut ConnectArgs> {
+        match &mut self.command {
+            Command::Status(args) if !args.watch => Some(&mut args.connect),
+            Command::Examine(args) => Some(&mut args.connect),
+            Command::Settings(args) => args.action.connect_mut(),
+            Command::Tune(args) => args.command.run_mut().map(|run| &mut run.connect),
+            // These go to one, have no controller, or have their own way with several.
+            Command::Status(_)
+            | Command::List(_)
+            | Command::Nodes(_)
+            | Command::Address(_)
+            | Command::Drive(_)
+            | Command::Stop(_)
+            | Command::Sim(_)
+            | Command::Terminal(_)
+            | Command::Protocol(_)
+            | Command::Monitor(_) => None,
+        }
+    }
 
-/// The files that a command writes of one controller.
-fn files_of(command: &mut Command) -> Vec<&mut PathBuf> {
-    if let Command::Examine(args) = command {
-        return args.json.iter_mut().chain(&mut args.output).collect();
+    fn how_mut(&mut self) -> Option<&mut WriteHow> {
+        let Command::Settings(args) = &mut self.command else { return None };
+        args.action.how_mut()
     }
-    if let Command::Tune(args) = command {
-        return args.command.run_mut().and_then(|run| run.report.as_mut()).into_iter().collect();
+
+    fn files_mut(&mut self) -> Vec<&mut PathBuf> {
+        match &mut self.command {
+            Command::Examine(args) => args.json.iter_mut().chain(&mut args.output).collect(),
+            Command::Tune(args) => {
+                args.command.run_mut().and_then(|run| run.report.as_mut()).into_iter().collect()
+            }
+            Command::Settings(args) => args.action.files_mut(),
+            Command::Status(_)
+            | Command::List(_)
+            | Command::Nodes(_)
+            | Command::Address(_)
+            | Command::Drive(_)
+            | Command::Stop(_)
+            | Command::Sim(_)
+            | Command::Terminal(_)
+            | Command::Protocol(_)
+            | Command::Monitor(_) => Vec::new(),
+        }
     }
-    let Command::Settings(args) = command else { return Vec::new() };
-    if let SettingsAction::Export(args) = &mut args.action { vec![&mut args.file] } else { Vec::new() }
+
+    fn run(&self, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
+        dispatch(&self.command, self.typed, out, interrupt)
+    }
 }
 
 /// A file's name with something before its ending: "cart.json" becomes "cart-0x81.json".

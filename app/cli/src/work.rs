@@ -3,8 +3,8 @@
 use std::io::{self, IsTerminal as _, Write as _};
 use std::time::{Duration, Instant};
 
-use brushwork_link::device::JobReport;
-use brushwork_link::{Event, JobEnding, JobTicket, Message};
+use brushwork_link::device::{JobContext, JobReport};
+use brushwork_link::{Event, Job, JobEnding, JobTicket, Message};
 
 use super::interrupt::exit_of_interruption;
 use super::messages::CliJobMessage;
@@ -60,6 +60,40 @@ pub fn wait<T>(
     }
     let exit = if is_cancelled { Exit::Interrupted } else { Exit::Failed };
     Err(exit.saying(CliJobMessage::NotInTime { act: ticket.name().clone() }))
+}
+
+/// What a job handed back.
+pub struct Finished<T> {
+    /// Its result, which tells how far it came when something broke in.
+    pub value: T,
+    /// The exit code, when something broke in.
+    pub broken: Option<Exit>,
+}
+
+/// Runs work that moves nothing on the device thread, with the selected controller, and waits for its end. Ctrl-C cancels it; what it had
+/// to say by then comes back all the same.
+///
+/// # Errors
+/// It was not begun, or nothing came of it; said on standard error.
+pub fn run<T: Send + 'static>(
+    client: &Client,
+    name: impl Into<Message>,
+    limit: Duration,
+    interrupt: &Interrupt,
+    mut work: impl FnMut(&mut JobContext<'_>) -> T + Send + 'static,
+) -> Result<Finished<T>, Exit> {
+    // What came of an act that failed is a result too, so that it comes back after an interruption.
+    let name = name.into();
+    let job = Job::new(name.clone(), limit, move |wire| Ok(work(wire)));
+    let ticket = client.device().start(job).map_err(|refused| {
+        Exit::Refused.saying(CliJobMessage::NotBegun { act: name.clone(), refused: refused.to_string() })
+    })?;
+    let JobReport { name, ending, .. } = wait(client, &ticket, limit, Moves::No, interrupt)?;
+    let broken = value(ending, &name, Exit::Failed, interrupt).err();
+    match (ticket.take(), broken) {
+        (Some(value), broken) => Ok(Finished { value, broken }),
+        (None, broken) => Err(broken.unwrap_or(Exit::Failed)),
+    }
 }
 
 /// What a job gave; why it did not run to its end is said.

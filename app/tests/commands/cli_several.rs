@@ -95,17 +95,49 @@ fn nothing_is_written_to_anybody_where_one_cannot_take_it() {
 }
 
 #[test]
-fn what_goes_to_one_controller_is_refused_for_several() {
+fn a_raw_number_goes_to_one_controller_and_is_refused_for_several() {
     let line = rover("0x80-0x81");
-    let file = name(line.folder.path()).to_owned();
-    for words in [
-        &["settings", "raw", "motor1.encoder.pin=1"][..],
-        &["firmware", "info"],
-        &["firmware", "update", &file],
-    ] {
-        let run = brushwork(&line, &[words, &["--address", "0x80-0x81"]].concat());
-        assert_eq!(run.code, USAGE, "{run:#?}");
+    let run = brushwork(&line, &["settings", "raw", "motor1.encoder.pin=1", "--address", "0x80-0x81"]);
+    assert_eq!(run.code, USAGE, "{run:#?}");
+}
+
+#[test]
+fn scripts_of_several_are_loaded_one_by_one_and_run_and_end_together() {
+    let line = Simulated::start(&["--model", "mcp266", "--address", "0x80-0x81"]);
+    let file = line.folder.path().join("drive.mcl");
+    std::fs::write(&file, "main\npower2 9830,655359,9830,655359\npause 10\ngoto main\n").unwrap();
+    let script = |words: &[&str], addresses: &str| {
+        brushwork(&line, &[&["script"], words, &["--address", addresses]].concat())
+    };
+    let done = script(&["download", name(&file), "--simulated", "--json"], "0x80-0x81").ended_with(DONE);
+    let json = done.json();
+    assert_eq!(each(&json, "/address"), [128, 129]);
+    assert_eq!(each(&json, "/result/verified"), ["status", "status"]);
+    script(&["autorun", "500"], "0x81").ended_with(DONE);
+    let json = script(&["status", "--json"], "all").ended_with(DONE).json();
+    assert_eq!(each(&json, "/result/autorun_delay_ms"), [Value::Null, Value::from(500)]);
+    let refused = script(&["start", "--for", "5"], "0x80-0x82").ended_with(NO_LINK);
+    refused.explains("Nobody answers at 0x82 on");
+    let started = script(&["start", name(&file), "--simulated", "--for", "0.3"], "0x80-0x81");
+    started.ended_with(DONE);
+    let json = brushwork(&line, &["status", "--address", "all", "--json"]).ended_with(DONE).json();
+    for position in each(&json, "/result/readings/m1_position") {
+        assert!(position.as_f64().is_some_and(|counts| counts > 0.0), "each of them ran: {json}");
     }
+    script(&["stop"], "0x80-0x81").ended_with(DONE);
+}
+
+#[test]
+fn firmware_of_several_is_told_for_each_and_updated_until_one_fails() {
+    let line = rover("0x80-0x81");
+    let json = brushwork(&line, &["firmware", "info", "--address", "0x80-0x81", "--json"]).ended_with(DONE);
+    assert_eq!(each(&json.json(), "/result/identity/address"), [128, 129]);
+    let image = line.folder.path().join("new.bin");
+    run(program().args(["firmware", "image", name(&image), "--model", "mcp266"])).ended_with(DONE);
+    let update = ["firmware", "update", name(&image), "--simulated", "--accept-risk"];
+    let refused = brushwork(&line, &[&update[..], &["--address", "0x80-0x81"]].concat());
+    // An image for another model is taken by neither; the second one is not tried any more.
+    refused.ended_with(REFUSED).explains("Not begun on 0x81 on").explains("Not done to the end on 0x80 on");
 }
 
 /// Boards as they are delivered have no serial time-out, so that none is armed: what matters here is that each is asked by itself.

@@ -22,7 +22,10 @@ use super::{Exit, Family, Interrupt, Page, Readings, Simulated};
 use crate::family::{Examples, Judged, Said, SimulatedModel};
 use crate::monitor::follower::Follower;
 use crate::tool::Tool;
+use crate::units;
 use decoder::Decoder;
+use firmware::args::FirmwareArgs;
+use script::args::ScriptArgs;
 
 /// MCP and RoboClaw as commands see them.
 #[derive(Debug)]
@@ -39,8 +42,8 @@ impl Family for McpCommands {
         let eds = "Write the electronic data sheet (EDS) of a controller as a CANopen node";
         let mcl = "Check, build, run, list and format MCL scripts; print the language reference";
         vec![
-            Tool::new("firmware", 10, firmware, firmware::run),
-            Tool::new("script", 11, script, script::run),
+            units::tool::<FirmwareArgs>("firmware", 10, firmware),
+            units::tool::<ScriptArgs>("script", 11, script),
             Tool::new("mcl", 40, mcl, mcl::run),
             Tool::new("eds", 33, eds, eds::run),
         ]

@@ -75,6 +75,11 @@ impl SettingsAction {
         }
     }
 
+    /// The files that it writes of one controller.
+    pub fn files_mut(&mut self) -> Vec<&mut PathBuf> {
+        if let Self::Export(args) = self { vec![&mut args.file] } else { Vec::new() }
+    }
+
     /// How it writes, if it shows changes and writes them.
     pub fn how_mut(&mut self) -> Option<&mut WriteHow> {
         match self {

@@ -1,20 +1,20 @@
 //! A connected controller whose settings are to be read or written: work runs as jobs on its device thread.
 
-use crate::messages::{CliJobMessage, CliSettingsMessage};
+use crate::messages::CliSettingsMessage;
 use brushwork_link::Message;
 use brushwork_link::messages::ActMessage;
 use std::sync::Arc;
 use std::time::Duration;
 
-use brushwork_link::device::{JobContext, JobReport};
+use brushwork_link::device::JobContext;
 use brushwork_link::transport::list_ports;
 use brushwork_link::{
-    DeviceHandle, Event, Failure, Identity, Job, Keeper, PollRate, Profile, ReadReport, SettingsTable,
-    Subject, UnitAddress, WriteOptions,
+    DeviceHandle, Event, Failure, Identity, Keeper, PollRate, Profile, ReadReport, SettingsTable, Subject,
+    UnitAddress, WriteOptions,
 };
 
 use super::cut_short;
-use crate::work::{self, Moves};
+use crate::work::{self, Finished};
 use crate::{Client, ConnectArgs, Exit, Interrupt, say};
 use brushwork_core::examine::RawWrite;
 use brushwork_core::keep::{Keeping, RawKeeper, Store, UnitId, profile_of};
@@ -28,14 +28,6 @@ pub struct Controller<'i> {
     pub subject: Subject,
     keeping: Keeping,
     pub unit: UnitId,
-}
-
-/// What a job handed back.
-pub struct Finished<T> {
-    /// Its result, which tells how far it came when something broke in.
-    pub value: T,
-    /// The exit code, when something broke in.
-    pub broken: Option<Exit>,
 }
 
 impl<'i> Controller<'i> {
@@ -169,22 +161,11 @@ impl<'i> Controller<'i> {
         &self,
         name: impl Into<Message>,
         limit: Duration,
-        mut work: impl FnMut(&mut JobContext<'_>) -> T + Send + 'static,
+        work: impl FnMut(&mut JobContext<'_>) -> T + Send + 'static,
     ) -> Result<Finished<T>, Exit> {
-        // What came of an act that failed is a result too, so that it comes back after an interruption.
-        let name = name.into();
-        let job = Job::new(name.clone(), limit, move |wire| Ok(work(wire)));
-        let ticket = self.client.device().start(job).map_err(|refused| {
-            Exit::Refused.saying(CliJobMessage::NotBegun { act: name.clone(), refused: refused.to_string() })
-        })?;
-        let JobReport { name, ending, .. } =
-            work::wait(&self.client, &ticket, limit, Moves::No, self.interrupt)?;
+        let finished = work::run(&self.client, name, limit, self.interrupt, work);
         self.keeping.take_faults().iter().for_each(|fault| say(fault.to_string()));
-        let broken = work::value(ending, &name, Exit::Failed, self.interrupt).err();
-        match (ticket.take(), broken) {
-            (Some(value), broken) => Ok(Finished { value, broken }),
-            (None, broken) => Err(broken.unwrap_or(Exit::Failed)),
-        }
+        finished
     }
 
     /// Lets events pass for a moment.

@@ -1,6 +1,7 @@
 //! `brushwork firmware update`: backup, risk, loader, pages.
 
 use crate::messages::{CliFirmwareMessage, CliScriptMessage};
+use brushwork_core::addresses;
 use brushwork_core::messages::CoreStatusMessage;
 use std::io::{self, IsTerminal as _, Write as _};
 use std::path::Path;
@@ -147,8 +148,11 @@ fn back_up(args: &UpdateArgs, controller: &Controller<'_>, out: &mut Output) -> 
     let profile = &kept.profile;
     let model = profile.subject.model.key;
     let path = args.backup.clone().unwrap_or_else(|| {
-        // Colons do not go into file names everywhere.
-        let name = format!("backup-{model}-{}.json", profile.date.replace(':', ""));
+        // Colons do not go into file names everywhere. Of several controllers each has its own.
+        let address =
+            args.connect.address.as_ref().map(|_| format!("{}-", addresses::name(profile.address.get())));
+        let of_unit = address.unwrap_or_default();
+        let name = format!("backup-{model}-{of_unit}{}.json", profile.date.replace(':', ""));
         args.file.parent().unwrap_or_else(|| Path::new("")).join(name)
     });
     backup_file(&path, args)

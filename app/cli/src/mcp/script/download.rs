@@ -3,6 +3,7 @@
 use crate::messages::CliScriptMessage;
 use std::path::Path;
 
+use brushwork_link::{Identity, PollRate};
 use brushwork_mcp_client::messages::McpActMessage;
 use brushwork_mcp_client::script::{Downloaded, Origin, ScriptImage, Verified, download};
 use brushwork_script::diagnostic::Severity;
@@ -12,15 +13,14 @@ use serde_json::json;
 
 use super::args::DownloadArgs;
 use crate::scripts::{Source, read_bytes};
-use crate::settings::controller::Controller;
-use crate::{Exit, Interrupt, Output, say};
+use crate::work;
+use crate::{Client, Exit, Interrupt, Output, say};
 
 /// Downloads and tells how far it is known to have arrived.
 pub fn run(args: &DownloadArgs, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
     let image = image_of(&args.file)?;
-    let controller = Controller::connect(&args.connect, interrupt)?;
-    controller.announce();
-    let done = to_controller(&controller, image, args.simulated)?;
+    let client = Client::connect(&args.connect, PollRate::Off, interrupt)?;
+    let done = to_unit(&client, &client.identity, image, args.simulated, interrupt)?;
     let printed = if args.json { print_json(&done, out) } else { out.line(sentence(&done)) };
     printed?;
     if !args.json {
@@ -52,15 +52,17 @@ fn compiled(file: &Path, bytes: Vec<u8>) -> Result<Vec<u8>, Exit> {
     Ok(image::to_file(&image::encode(&program)))
 }
 
-/// Downloads to a connected controller.
-pub fn to_controller(
-    controller: &Controller<'_>,
+/// Downloads to the selected one of a link's controllers.
+pub fn to_unit(
+    client: &Client,
+    unit: &Identity,
     image: ScriptImage,
     simulated_elsewhere: bool,
+    interrupt: &Interrupt,
 ) -> Result<Downloaded, Exit> {
-    let is_refused =
-        image.origin() == Origin::Own && !controller.identity().simulated && !simulated_elsewhere;
-    let finished = controller.run(McpActMessage::DownloadScript, image.download_limit(), move |wire| {
+    let is_refused = image.origin() == Origin::Own && !unit.simulated && !simulated_elsewhere;
+    let limit = image.download_limit();
+    let finished = work::run(client, McpActMessage::DownloadScript, limit, interrupt, move |wire| {
         let is_simulated = wire.is_simulated() || simulated_elsewhere;
         download(wire, &image, is_simulated)
     })?;

@@ -11,7 +11,8 @@ use brushwork_plant::world::{ScriptRun, ScriptView};
 use serde_json::json;
 
 use super::args::{AutorunArgs, StatusArgs};
-use crate::settings::controller::{Controller, Finished};
+use crate::settings::controller::Controller;
+use crate::work::Finished;
 use crate::{Exit, Interrupt, Output, say};
 
 /// More than reading takes at the slowest rates.

@@ -270,24 +270,31 @@ impl DeviceLoop {
         if overtaken {
             return self.tell_not_sent(ActMessage::StartScript, CauseMessage::Stopped);
         }
-        let started = self.act(asked_at, |unit, line| unit.start_script(line));
-        self.units[self.selected].script_started |= !matches!(started, Err(ExchangeError::NotArmed { .. }));
-        if let Err(error) = started {
-            let unsure = is_unsure(&error);
-            match error.answered() {
-                Some(answer) => self.tell_refused_start(answer),
-                None => self.tell(ActMessage::StartScript, &error),
+        let mut runs = false;
+        for index in self.together() {
+            let started = self.act_on(index, asked_at, |unit, line| unit.start_script(line));
+            self.units[index].script_started |= !matches!(started, Err(ExchangeError::NotArmed { .. }));
+            if let Err(error) = started {
+                let unsure = is_unsure(&error);
+                match error.answered() {
+                    Some(answer) => self.tell_refused_start(index, answer),
+                    None => self.tell_of(index, ActMessage::StartScript, &error),
+                }
+                if unsure {
+                    self.halt(DisarmReason::NoAnswer);
+                } else if runs && self.armed.is_some() && error.interruption().is_none() {
+                    self.halt(DisarmReason::NotTogether);
+                }
+                return;
             }
-            if unsure {
-                self.halt(DisarmReason::NoAnswer);
-            }
+            runs = true;
         }
     }
 
     /// Simulated controllers refuse by another byte than FF. Nobody knows what a real one says, so that it is stopped all the same.
-    fn tell_refused_start(&mut self, answer: u8) {
+    fn tell_refused_start(&mut self, index: usize, answer: u8) {
         let (came_back, remedy) = (CauseMessage::NoScript { answer }, RemedyMessage::DownloadFirst);
-        let failure = Failure::new(ActMessage::StartScript, self.name_of(self.selected), came_back, remedy);
+        let failure = Failure::new(ActMessage::StartScript, self.name_of(index), came_back, remedy);
         self.outbox.send(Event::Failure(failure));
     }
 
