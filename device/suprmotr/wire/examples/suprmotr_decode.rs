@@ -1,4 +1,4 @@
-//! What a line asks for: `cargo run -p brushwork-suprmotr-wire --example decode -- "MA0,WS500,MR500,WS100,RP49"`.
+//! What a line asks for: `cargo run -p brushwork-suprmotr-wire --example suprmotr_decode -- "MA0,WS500,MR500,WS100,RP49"`.
 #![expect(clippy::print_stdout, reason = "an example talks to the terminal")]
 
 use brushwork_suprmotr_wire::{Radix, describe_line, parse_line};

@@ -1,4 +1,4 @@
-//! A simulated Motion Mind 3 in virtual time, byte by byte: `cargo run -p brushwork-motion-mind-sim --example bytes`.
+//! A simulated Motion Mind 3 in virtual time, byte by byte: `cargo run -p brushwork-motion-mind-sim --example motion_mind_bytes`.
 //!
 //! Drives the motor in mode 3, looks at its position, falls silent, and shows that the motor goes on: this unit has no time-out of its own.
 #![expect(clippy::print_stdout, reason = "an example talks to the terminal")]

@@ -1,4 +1,4 @@
-//! A simulated MCP266 in virtual time, byte by byte: `cargo run -p brushwork-mcp-sim --example bytes`.
+//! A simulated MCP266 in virtual time, byte by byte: `cargo run -p brushwork-mcp-sim --example mcp_bytes`.
 //!
 //! Asks who it is, drives motor 1, looks at the encoder, falls silent, and shows that the unit's own time-out stops the motor.
 #![expect(clippy::print_stdout, reason = "an example talks to the terminal")]

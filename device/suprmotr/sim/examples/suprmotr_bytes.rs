@@ -1,4 +1,4 @@
-//! A simulated SuprMotr in virtual time, byte by byte: `cargo run -p brushwork-suprmotr-sim --example bytes`.
+//! A simulated SuprMotr in virtual time, byte by byte: `cargo run -p brushwork-suprmotr-sim --example suprmotr_bytes`.
 //!
 //! Selects the board, moves its slide, looks on by single characters, and stops it with the character that every board hears.
 #![expect(clippy::print_stdout, reason = "an example talks to the terminal")]

@@ -1,4 +1,4 @@
-//! What bytes on the line ask for: `cargo run -p brushwork-motion-mind-wire --example decode -- 1D 01 00 1E`.
+//! What bytes on the line ask for: `cargo run -p brushwork-motion-mind-wire --example motion_mind_decode -- 1D 01 00 1E`.
 //!
 //! Takes the bytes that a client sent, as hexadecimal pairs with a comma for each pause, and tells the commands in
 //! them. Without arguments it decodes one that it brings along, with noise before it.

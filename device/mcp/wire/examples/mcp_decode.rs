@@ -1,4 +1,4 @@
-//! What bytes on the line ask for: `cargo run -p brushwork-mcp-wire --example decode -- 80 20 20 00 5D 18`.
+//! What bytes on the line ask for: `cargo run -p brushwork-mcp-wire --example mcp_decode -- 80 20 20 00 5D 18`.
 //!
 //! Takes the bytes that a client sent, as hexadecimal pairs with a comma for each pause, and tells the requests of packet
 //! serial in them, in the layouts of generation 1. Without arguments it decodes a few that it brings along.
