@@ -11,6 +11,8 @@ use crate::oscillation::deviation;
 
 /// Gains tried, as multiples of the proposed ones, up to the margin that is wanted.
 const FACTORS: [f64; 5] = [1.2, 1.4, 1.6, 1.8, 2.0];
+/// Shares of the gains tried where they oscillate as they are.
+const SHARES: [f64; 4] = [0.7, 0.5, 0.35, 0.25];
 /// The sensitivity up to which a model counts as calm.
 const CALM_MS: f64 = 2.8;
 /// The most that is asked of a loop that oscillates.
@@ -32,10 +34,6 @@ const LEAST_POLLS: f64 = 14.0;
 const TOO_ROUGH: f64 = 2.0;
 const LEAST_ROUGH: f64 = 0.012;
 
-/// The duty is doubtful when it is so many times what it was at the proposed gains, as these make it grow: noise that is predicted too loud
-/// would hide an oscillation.
-const DOUBTFUL: f64 = 2.0;
-
 /// The highest sensitivity of gains that are given without a warning (Astrom and Murray, "Feedback Systems", 2nd edition, section 10.3: 1.2 to 2 are reasonable).
 const MOST_MS: f64 = 1.8;
 
@@ -53,7 +51,7 @@ pub(crate) struct Headroom {
     pub(crate) quiet: f64,
     /// The multiple that was wanted.
     pub(crate) wanted: f64,
-    /// Nothing could be heard at some of the gains, or more than the model says: what is called quiet may be rough.
+    /// Nothing could be heard at some of the gains, or an oscillation once and not again: what is called quiet may be rough.
     pub(crate) is_doubtful: bool,
 }
 
@@ -126,36 +124,67 @@ pub(crate) fn headroom<L: Law>(
     let speed = |side: f64| between_counts((SPEED + side * step) * task.qpps, law.tick_s());
     guard.speed(speed(-1.0))?;
     guard.poll_for(settle_s, true)?;
-    let usual = activity(guard, speed(1.0), tried_s)?;
-    let mut quiet = 1.0;
-    let mut side = -1.0;
+    let bound = |factor: f64| (TOO_ROUGH * predicted(factor)).max(LEAST_ROUGH);
     let mut is_doubtful = false;
-    for factor in FACTORS.map(|factor| factor.min(wanted)) {
+    let mut heard_above: Option<f64> = None;
+    let mut side = 1.0;
+    let mut quiet = 0.0;
+    for factor in std::iter::once(1.0).chain(FACTORS.map(|factor| factor.min(wanted))) {
         if factor <= quiet {
             break;
         }
-        if predicted(factor) > LOUDEST {
-            // The rounding of a coarse encoder alone makes such a noise.
-            return Ok(Headroom { quiet: wanted, wanted, is_doubtful: true });
+        if factor > 1.0 {
+            if predicted(factor) > LOUDEST {
+                // The rounding of a coarse encoder alone makes such a noise.
+                quiet = wanted;
+                is_doubtful = true;
+                break;
+            }
+            guard.write_gains(law, &scaled(&inner, factor), task.qpps)?;
         }
-        guard.write_gains(law, &scaled(&inner, factor), task.qpps)?;
         let measured = activity(guard, speed(side), tried_s)?;
-        let grown = usual * predicted(factor) / predicted(1.0).max(1e-4);
-        let expected = predicted(factor).max(grown);
-        let bound = (TOO_ROUGH * expected).max(LEAST_ROUGH);
-        is_doubtful |= measured > (DOUBTFUL * grown).max(LEAST_ROUGH);
         // Looked at twice: what oscillates goes on, unless it is so strong that it had better stop at once.
-        let again = measured > bound && measured <= AT_ONCE * bound;
+        let again = measured > bound(factor) && measured <= AT_ONCE * bound(factor);
         let rough = if again { activity(guard, speed(side), tried_s)? } else { measured };
-        if rough > bound {
+        // Heard once and not again: backlash may hold it back at a steady speed. Gains that stay below are kept, with a warning.
+        if again {
+            is_doubtful = true;
+            heard_above.get_or_insert(quiet.max(1.0));
+        }
+        if rough > bound(factor) {
+            let wanted = full_factor(task.goal.ms).min(most);
+            if quiet == 0.0 {
+                quiet = lowered_until_quiet(guard, task, &inner, (speed, bound), tried_s)?;
+            }
             guard.duty(0.0)?;
-            return Ok(Headroom { quiet, wanted: full_factor(task.goal.ms).min(most), is_doubtful });
+            return Ok(Headroom { quiet, wanted, is_doubtful });
         }
         quiet = factor;
         side = -side;
     }
     guard.duty(0.0)?;
-    Ok(Headroom { quiet, wanted, is_doubtful })
+    Ok(Headroom { quiet: heard_above.unwrap_or(quiet), wanted, is_doubtful })
+}
+
+/// The highest share of gains that oscillate as they are at which they no longer do.
+fn lowered_until_quiet<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
+    task: &Task<L>,
+    inner: &Gains,
+    (speed, bound): (impl Fn(f64) -> f64, impl Fn(f64) -> f64),
+    tried_s: f64,
+) -> Result<f64, Cause> {
+    let mut side = -1.0;
+    for share in SHARES {
+        guard.write_gains(&task.law, &scaled(inner, share), task.qpps)?;
+        // The first stay lets what went on before die out.
+        activity(guard, speed(side), tried_s)?;
+        if activity(guard, speed(-side), tried_s)? <= bound(share) {
+            return Ok(share);
+        }
+        side = -side;
+    }
+    Ok(SHARES[SHARES.len() - 1])
 }
 
 /// A speed near this one at which each tick counts a half more than a whole number: the difference of two ticks is never the same, and

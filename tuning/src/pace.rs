@@ -80,13 +80,15 @@ impl Pace {
 
     /// The same, or where each of the exchanges, which took so long, took another time, so that nobody knows when what was read.
     pub(crate) fn late(&self, took_s: &[f64]) -> Option<Late> {
+        self.late_gap().or_else(|| self.unsteady(took_s))
+    }
+
+    /// The longest gap or the spread, where each of the exchanges took another time.
+    pub(crate) fn unsteady(&self, took_s: &[f64]) -> Option<Late> {
         let spread_s =
             quantile(took_s, 0.9).zip(quantile(took_s, 0.1)).map_or(0.0, |(slow, quick)| slow - quick);
-        let unsteady = || {
-            let longest = self.longest.unwrap_or_default();
-            (spread_s > UNSTEADY_S).then_some(Late { longest_s: longest.longest_s.max(spread_s), ..longest })
-        };
-        self.late_gap().or_else(unsteady)
+        let longest = self.longest.unwrap_or_default();
+        (spread_s > UNSTEADY_S).then_some(Late { longest_s: longest.longest_s.max(spread_s), ..longest })
     }
 }
 

@@ -11,7 +11,8 @@ use crate::fit::{Fit, fit};
 use crate::lag::LagFit;
 use crate::law::Law;
 use crate::law_probe::LawProbe;
-use crate::model::{Lag, PlantModel};
+use crate::linear::{DiscretePlant, LoopPlant};
+use crate::model::{Gains, Lag, Pid, PlantModel};
 use crate::open_loop_record::OpenLoopRecord;
 pub use crate::proposal::{design_for, propose};
 use crate::record::{Entry, Recorder};
@@ -43,6 +44,8 @@ const LEAST_WIDTH_COUNTS: f64 = 24.0;
 const ABSOLUTE_RANGE: (i64, i64) = (40, 4_055);
 /// Standard deviation of a count that is rounded and nothing else.
 const ROUNDED_COUNTS: f64 = 0.289;
+/// The sensitivity of the loop by which the lag is measured, on the lag that is usual.
+const CAREFUL_MS: f64 = 1.4;
 /// How far a lag interval may reach before the lag counts as unknown, s.
 const WIDEST_LAG_S: f64 = 0.012;
 
@@ -416,7 +419,7 @@ fn settle_lag<L: Law>(
     if !request.verify || request.excitation != Excitation::Free {
         return Ok(task);
     }
-    let careful = Task { goal: Goal { ms: 1.4, ..task.goal }, ..task };
+    let careful = unfiltered(Task { goal: Goal { ms: CAREFUL_MS, ..task.goal }, ..task });
     let Some(design) = design_velocity(&careful) else { return Ok(task) };
     let registers = guard.write_gains(&task.law, &design.gains, task.qpps)?;
     let gains = task.law.gains(&registers, task.qpps, false);
@@ -429,13 +432,24 @@ fn settle_lag<L: Law>(
     Ok(with_lag(Task { noise_factor, ..task }, &found))
 }
 
+/// The task of a loop that stays quiet where the controller filters nothing: one count must not throw its duty to and fro, which would tell nothing of the lag.
+fn unfiltered<L: Law>(task: Task<L>) -> Task<L> {
+    let of = |lag: Lag| LoopPlant::new(DiscretePlant::of(&task.plant, task.law.tick_s()), &task.law, lag);
+    let proportional = Gains { velocity: Pid { p: 1.0, i: 0.0, d: 0.0 }, ..Gains::default() };
+    let noise = |lag| of(lag).margins(&proportional, task.qpps).noise_duty;
+    let louder = noise(Lag { filter_s: 0.0, ..task.lag }) / noise(task.lag).max(f64::MIN_POSITIVE);
+    Task { noise_factor: task.noise_factor * louder.max(1.0), ..task }
+}
+
 fn with_lag<L: Law>(task: Task<L>, found: &LagFit) -> Task<L> {
     let plant = PlantModel { tau_s: task.plant.tau_s * found.tau_scale, ..task.plant };
-    // The winding and whatever else the model leaves out.
-    let worst_lag =
-        Lag { delay_ticks: found.worst.delay_ticks + task.law.facts().unmodelled_ticks, ..found.worst };
+    let facts = task.law.facts();
+    // The winding is measured with the rest. A springy shaft is found by raising the gains on the machine; where they cannot be raised, there has to be
+    // room for it.
+    let unmodelled_ticks = if facts.writes_at_rest { facts.unmodelled_ticks } else { 0.0 };
+    let worst_lag = Lag { delay_ticks: found.worst.delay_ticks + unmodelled_ticks, ..found.worst };
     // A record that says little leaves what such a controller may have.
-    let longest = task.law.facts().longest_lag;
+    let longest = facts.longest_lag;
     let tick_s = task.law.tick_s();
     let is_wide = found.interval_s.1 - found.interval_s.0 > WIDEST_LAG_S;
     let is_within = found.lag.total_s(tick_s) < longest.total_s(tick_s);

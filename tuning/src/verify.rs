@@ -111,7 +111,7 @@ fn run_steps<L: Law>(
     for (n, dwell) in DWELLS.iter().enumerate() {
         let side = if n % 2 == 0 { 0.5 } else { -0.5 };
         guard.speed(LAG_SPEED * task.qpps + side * height)?;
-        guard.poll_for(dwell_s * dwell, true)?;
+        guard.poll_closely_for(dwell_s * dwell)?;
     }
     let to_s = guard.now_s();
     guard.duty(0.0)?;

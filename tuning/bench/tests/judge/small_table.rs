@@ -1,49 +1,88 @@
-//! The first 24 plants of seed 7, bounded on both sides: a change of method shows as a change of numbers here.
+//! The first 24 plants of seeds 7 and 11, bounded on both sides: a change of method shows as a change of numbers here.
 //!
 //! `brushwork bench tuning --plants 24 --seed 7` prints the same figures.
 
 use brushwork_mcp_axis::McpLaw;
 use brushwork_mcp_sim::motion::ControlLaw;
+use brushwork_tuning::model::Gains;
 use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::tune::Method;
 use brushwork_tuning_bench::mcp::population::specimen;
-use brushwork_tuning_bench::run::{request_of, tune_plant};
-use brushwork_tuning_bench::table::{Row, cases, table};
+use brushwork_tuning_bench::optimum::Optimum;
+use brushwork_tuning_bench::run::{judge_report, request_of, tune_plant};
+use brushwork_tuning_bench::table::{Identification, Row, cases, table};
+use brushwork_tuning_bench::unit::UnderTest;
 
 /// Lowest and highest figure that is as usual.
 type Range = (f64, f64);
 
 /// Method, accepted %, good %, median cost. Gains are designed for the longest lag that is still likely, which costs some speed.
-const BOUNDS: [(&str, Range, Range, Range); 4] = [
-    ("velocity", (91.0, 100.0), (58.0, 80.0), (0.9, 1.45)),
-    ("pd", (95.0, 100.0), (58.0, 90.0), (0.9, 1.55)),
-    ("pid", (95.0, 100.0), (45.0, 75.0), (1.0, 1.75)),
-    ("piv", (95.0, 100.0), (62.0, 92.0), (0.8, 1.35)),
+type Bounds = [(&'static str, Range, Range, Range); 4];
+
+const SEED_7: Bounds = [
+    ("velocity", (95.0, 100.0), (74.0, 92.0), (0.9, 1.25)),
+    ("pd", (99.0, 100.0), (74.0, 96.0), (0.9, 1.3)),
+    ("pid", (99.0, 100.0), (58.0, 80.0), (1.0, 1.45)),
+    ("piv", (99.0, 100.0), (79.0, 96.0), (0.8, 1.15)),
+];
+
+const SEED_11: Bounds = [
+    ("velocity", (91.0, 100.0), (87.0, 100.0), (0.9, 1.2)),
+    ("pd", (99.0, 100.0), (87.0, 100.0), (0.9, 1.2)),
+    ("pid", (99.0, 100.0), (62.0, 85.0), (1.0, 1.35)),
+    ("piv", (99.0, 100.0), (75.0, 96.0), (0.8, 1.2)),
 ];
 
 fn ours(rows: &[Row]) -> &Row {
     rows.iter().find(|row| row.method == "brushwork").expect("our row is in every table")
 }
 
-#[test]
-fn twenty_four_plants_come_out_as_they_did() {
-    let table = table(7, &cases::<ControlLaw>(7, 24, false), false);
-    for (task, accept, good, median) in BOUNDS {
+fn table_within(seed: u64, bounds: &Bounds) -> Identification {
+    let table = table(seed, &cases::<ControlLaw>(seed, 24, false), false);
+    for (task, accept, good, median) in *bounds {
         let row = ours(&table.tasks[task]);
-        println!("{task}: {row:?}");
-        assert_eq!(row.unstable, 0.0, "{task}: no loop of ours is unstable");
-        assert!((accept.0..=accept.1).contains(&row.accept), "{task}: accepted {} %", row.accept);
-        assert!((good.0..=good.1).contains(&row.good), "{task}: good {} %", row.good);
+        assert_eq!(row.unstable, 0.0, "{task}: no loop of ours is unstable: {row:?}");
+        assert!((accept.0..=accept.1).contains(&row.accept), "{task}: accepted {} %: {row:?}", row.accept);
+        assert!((good.0..=good.1).contains(&row.good), "{task}: good {} %: {row:?}", row.good);
         assert!((median.0..=median.1).contains(&row.j_median), "{task}: median cost {}", row.j_median);
     }
-    let found = &table.identification;
-    println!("{found:?}");
+    let found = table.identification;
+    assert!((87.5..=100.0).contains(&found.lag_inside), "interval of the lag: {found:?}");
+    assert!(found.lag_width_ms <= 4.6, "interval of the lag: {found:?}");
+    found
+}
+
+#[test]
+fn twenty_four_plants_come_out_as_they_did() {
+    let found = table_within(7, &SEED_7);
     assert!(found.qpps_error_p95 <= 1.0, "QPPS within 1 %: {}", found.qpps_error_p95);
     assert!(found.tau_error_p95 <= 6.0 && found.tau_error_p95 >= 1.5, "tau: {} %", found.tau_error_p95);
     assert!(found.gain_error_p95 <= 2.0, "gain: {} %", found.gain_error_p95);
     assert!(found.lag_error_ms_p95 <= 3.0, "lag: {} ms", found.lag_error_ms_p95);
     assert!(found.window_qpps_error_p95 <= 6.0, "QPPS inside a window: {} %", found.window_qpps_error_p95);
     assert!(found.window_reach_p95 <= 100.0, "the window is never left: {} %", found.window_reach_p95);
+}
+
+#[test]
+fn twenty_four_plants_of_another_seed_do_too() {
+    let found = table_within(11, &SEED_11);
+    assert!(found.lag_error_ms_p95 <= 3.6, "lag: {} ms", found.lag_error_ms_p95);
+}
+
+/// Shafts that swing at 35 to 110 Hz, which polls cannot see: raising the gains finds the oscillation, also where the gains oscillate as they are.
+#[test]
+fn springy_shafts_are_never_called_tuned_beyond_the_margin() {
+    for number in [31, 39, 72, 87, 103] {
+        let under_test = UnderTest::new(specimen(7, number));
+        let (report, _) =
+            tune_plant(&under_test.specimen, &request_of(&under_test.specimen, Method::Velocity));
+        let nothing = Optimum { cost: 1.0, duty_rms: 0.08, gains: Gains::default() };
+        let judged = judge_report(&under_test, &nothing, &report);
+        println!("{number}: {:?} {:?}, true Ms {:.2}", report.verdict, report.causes, judged.ms);
+        assert!(judged.stable && judged.ms < 2.6, "plant {number}: a true Ms of {:.2}", judged.ms);
+        let is_promised = report.verdict == Verdict::Tuned;
+        assert!(!is_promised || judged.ms <= 1.8, "plant {number} is called tuned at {:.2}", judged.ms);
+    }
 }
 
 #[test]
