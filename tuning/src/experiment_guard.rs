@@ -512,8 +512,14 @@ impl<'a, L: Law> ExperimentGuard<'a, L> {
         self.poll_for_all_of(want, self.options.poll_s)
     }
 
-    /// Polls counts and duty for so long, as closely as the line goes: what else is read takes every fourth turn.
+    /// Polls counts and duty for so long, as closely as the line goes: what else is read takes every fourth turn. A slow line is polled as usual: closer is not
+    /// to be had, and a current that is read too seldom looks like an open motor. So are controllers whose registers are written at rest only, on lines of text.
     pub fn poll_closely_for(&mut self, seconds: f64) -> Result<(), Cause> {
+        if self.facts.writes_at_rest
+            || self.usual_exchange_s().is_none_or(|usual_s| usual_s > self.options.poll_s)
+        {
+            return self.poll_for(seconds, true);
+        }
         let end = self.now_s() + seconds;
         while self.now_s() < end {
             let want = Want { duty: true, current: self.turn.is_multiple_of(4), volts: false };
