@@ -11,8 +11,9 @@ use crossbeam_channel::{TryRecvError, bounded};
 use egui::Context;
 
 use super::{App, OPENING_INTERVAL, waker};
+use crate::focus::{self, Region};
 use crate::model::Afterwards;
-use crate::model::{Choice, Connection, ConnectionId, Effect, Gravity, LinkView, Phase, place_of};
+use crate::model::{Choice, Connection, ConnectionId, Effect, Gravity, LinkView, Phase, Screen, place_of};
 use crate::parts::OpenLink;
 use crate::{family, links};
 
@@ -62,6 +63,9 @@ impl App {
             front.lost = None;
             front.could_not_open = false;
             front.shows_start = false;
+            if self.model.screen != Screen::MclEditor {
+                focus::want(&self.ctx, Region::Screen);
+            }
             self.model.files.close();
             front.phase = Phase::Opening { target: text };
             let opening = self.parts.opener.open(target, addresses);

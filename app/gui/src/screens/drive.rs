@@ -57,9 +57,6 @@ pub fn drive_ui(
             let bottom = ui.cursor().top() + room.height();
             head_ui(ui, model, title, note);
             arm_ui(ui, scope, &model.front.link, model.front.family(), commands);
-            if is_tuning(model) {
-                region_ui(ui, Region::Controls);
-            }
             // Guided tuning and a large graph take the room of the sliders. What they asked for goes on; nobody can hold a jog button.
             if is_tuning(model) {
                 model.front.release_jogs();

@@ -41,7 +41,10 @@ pub fn start_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
                 ui.add_space(10.0);
                 files_ui(ui, model, commands);
             });
-            ui[columns - 1].with_layout(left, |ui| simulated_ui(ui, commands));
+            ui[columns - 1].with_layout(left, |ui| {
+                region_ui(ui, Region::World);
+                simulated_ui(ui, commands);
+            });
         });
     });
 }

@@ -1,14 +1,14 @@
 //! The guide: buttons and levels at the top, what is found at the left, its picture at the right.
 
 use egui::{
-    Align, Button, Frame, Label, Layout, Margin, ProgressBar, Rect, RichText, ScrollArea, Stroke, Ui,
+    Align, Button, Frame, Id, Label, Layout, Margin, ProgressBar, Rect, RichText, ScrollArea, Stroke, Ui,
     UiBuilder, vec2,
 };
 
 use super::{Loop, TuneAction, Tuning, plots, result, setup};
 use crate::command::{Command, Commands};
-use crate::focus::{Region, region_ui};
-use crate::model::Model;
+use crate::focus::{self, Region, region_ui};
+use crate::model::{Connection, Model};
 use crate::theme::Palette;
 use crate::tune::messages::RunMessage;
 
@@ -23,13 +23,16 @@ const PICTURE_HEIGHT: f32 = 300.0;
 pub fn guide_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let Some(which) = Loop::of(model.screen) else { return };
     if let Some(why) = model.front.cannot_tune() {
+        region_ui(ui, Region::Controls);
         ui.add(Label::new(why).wrap());
         return;
     }
+    go_to_result(ui, &model.front, which);
     let outline = Stroke::new(1.0, Palette::of(ui).line);
     Frame::new().stroke(outline).corner_radius(4.0).inner_margin(Margin::symmetric(10, 6)).show(ui, |ui| {
         ui.set_width(ui.available_width());
         if model.front.tune.is_running() {
+            region_ui(ui, Region::Controls);
             progress_ui(ui, &model.front.tune, which, commands);
         } else {
             setup::setup_ui(ui, model, which, commands);
@@ -45,6 +48,20 @@ pub fn guide_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         });
     }
     found_ui(ui, model, which, commands);
+}
+
+/// When a run has ended and its gains can be applied, the keyboard goes to what came of it; a hand at the pointer is not led about.
+fn go_to_result(ui: &Ui, front: &Connection, which: Loop) {
+    let id = Id::unique("a tuning run is shown");
+    let is_running = front.tune.is_running();
+    let has_run = is_running || ui.data(|data| data.get_temp(id)).unwrap_or(false);
+    // The gains of the level are worked out a moment after the run.
+    let is_shown = front.tune.front(which).run().is_none_or(|run| run.shown.is_some());
+    let is_over = has_run && !is_running && !front.is_guided() && !front.settings.is_busy() && is_shown;
+    ui.data_mut(|data| data.insert_temp(id, has_run && !is_over));
+    if is_over && focus::shows_ring(ui.ctx()) {
+        focus::want(ui.ctx(), Region::Result);
+    }
 }
 
 /// What the runs have found, with its picture: it needs no controller.

@@ -189,6 +189,8 @@ pub struct Tuning {
     /// A path for a report, as it is typed.
     pub path: String,
     pub dialog: Option<Asked>,
+    /// The keyboard goes to the button that starts a run: what it lacked was said.
+    pub wants_start: bool,
 }
 
 impl Default for Tuning {
@@ -206,6 +208,7 @@ impl Default for Tuning {
             waiting: None,
             path: String::new(),
             dialog: None,
+            wants_start: false,
         }
     }
 }

@@ -10,6 +10,7 @@ use super::model::{Setting, TuneAction};
 use super::which::Loop;
 use crate::command::{Command, Commands};
 use crate::family::Ability;
+use crate::focus::{self, Region, region_ui};
 use crate::messages::NameMessage;
 use crate::model::Model;
 use crate::theme::Palette;
@@ -35,6 +36,11 @@ pub fn setup_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Comm
     let can_start = is_armed && is_free;
     let is_wide = ui.available_width() >= WITH_WORDS;
     let motors = model.front.motors();
+    // What a run lacks yet is where the keyboard comes to.
+    let front = model.front.tune.motor(which);
+    if !model.front.tune.panel(which, front).setting.lacks_travel() {
+        region_ui(ui, Region::Controls);
+    }
     if ui.available_width() >= BOTH_IN_A_ROW {
         ui.horizontal(|ui| {
             for motor in motors {
@@ -76,6 +82,9 @@ fn motor_row_ui(
     } else {
         "Arm this screen first"
     });
+    if is_front && can_start && std::mem::take(&mut model.front.tune.wants_start) {
+        tune.request_focus();
+    }
     if tune.on_hover_text("Moves the motor, at up to the highest duty").clicked() {
         commands.push(Command::Tune(TuneAction::Start(motor)));
     }
@@ -114,9 +123,13 @@ fn options_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
     let travel_width = if setting.turns_freely { 0.0 } else { TRAVEL_WIDTH };
     let encoder_width = if has_encoders { 0.0 } else { ENCODER_WIDTH };
     let is_wide = ui.available_width() >= OPTIONS_IN_A_ROW[which as usize] + travel_width - encoder_width;
+    let lacked_travel = setting.lacks_travel();
     ui.horizontal(|ui| {
         ui.strong(NameMessage::MotorHead { number: motor.index() + 1 }.to_string());
         methods_ui(ui, setting, methods);
+        if lacked_travel {
+            region_ui(ui, Region::Controls);
+        }
         // A velocity loop has no use for position limits, which may be left over.
         travel_ui(ui, setting, travel.filter(|_| which == Loop::Position));
         if is_wide {
@@ -130,6 +143,8 @@ fn options_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
     if which == Loop::Velocity {
         ui.horizontal(|ui| identification_ui(ui, setting));
     }
+    let is_said = lacked_travel && !setting.lacks_travel();
+    model.front.tune.wants_start |= is_said && focus::shows_ring(ui.ctx());
 }
 
 /// How the motor of a velocity loop is identified.
