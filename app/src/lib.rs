@@ -69,7 +69,7 @@ pub static FAMILIES: [Family; 4] = [
         window: &brushwork_gui::suprmotr::SuprMotr,
         commands: &brushwork_cli::suprmotr::SuprMotrCommands,
         #[cfg(feature = "bench")]
-        judge: None,
+        judge: Some(brushwork_tuning_bench::suprmotr::JUDGE),
         #[cfg(feature = "bench")]
         measures: &[],
     },

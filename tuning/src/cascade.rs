@@ -11,6 +11,7 @@ const DELAYS: [f64; 6] = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0];
 
 /// Properties of such a loop at 300 Hz or more: a lag of an extra tick and a filter of one, of three at the most.
 pub const CASCADE: Facts = Facts {
+    has_duty: true,
     has_cascade: true,
     can_be_probed: false,
     writes_at_rest: false,
@@ -20,6 +21,7 @@ pub const CASCADE: Facts = Facts {
     longest_lag: Lag { filter_s: 0.010, delay_ticks: 1.0 },
     filters_s: &FILTERS_S,
     delays_ticks: &DELAYS,
+    rates_hz: &[],
     unmodelled_ticks: 0.5,
     integral_times: (3.0, 0.8),
 };

@@ -263,7 +263,8 @@ impl<'a, L: Law> ExperimentGuard<'a, L> {
             .drives
             .last()
             .is_none_or(|last| last.input == Input::Duty(0.0) || kind(&last.input) != kind(&input));
-        if self.facts.writes_at_rest && is_another {
+        // A move of an axis without duty is several commands: its pace, whether it may, and where to.
+        if (self.facts.writes_at_rest && is_another) || !self.facts.has_duty {
             self.pause();
         }
     }
@@ -271,7 +272,8 @@ impl<'a, L: Law> ExperimentGuard<'a, L> {
     /// What a run is refused for. A cause that names the machine stands only if all answers were on time, since the bounds of the guard
     /// and the model come from the whole run; and one that was named by the current only if that was clear of its noise.
     pub(crate) fn concluded(&self, cause: Cause) -> Cause {
-        if !self.options.weighs_evidence {
+        // Without a duty no current names anything, and places are dated.
+        if !self.options.weighs_evidence || !self.facts.has_duty {
             return cause;
         }
         let took_s: Vec<f64> =
@@ -888,6 +890,10 @@ impl<'a, L: Law> ExperimentGuard<'a, L> {
 
     /// Drives against a motion until it is over, so that an axis near the end of its window does not run on beyond it.
     fn turn_back(&mut self, speed: f64) {
+        if !self.facts.has_duty {
+            let _ = retried(|| self.axis.drive_duty(0));
+            return;
+        }
         let raw = (-speed.signum() * self.options.max_duty * f64::from(FULL_DUTY_RAW)) as i16;
         if retried(|| self.axis.drive_duty(raw)).is_err() {
             return;

@@ -120,6 +120,13 @@ impl<A: LeadingLaw, P: LawPart> Law for Both<A, P> {
         of_law!(self.rate_hz())
     }
 
+    fn at_rate(&self, rate_hz: u32) -> Self {
+        match self.second.law() {
+            Some(law) => Self::second(law.at_rate(rate_hz)),
+            None => Self { first: self.first.at_rate(rate_hz), ..*self },
+        }
+    }
+
     fn feed_forward(&self) -> f64 {
         of_law!(self.feed_forward())
     }
@@ -144,6 +151,10 @@ impl<A: LeadingLaw, P: LawPart> Law for Both<A, P> {
 
     fn rounded(&self, gains: &Gains, qpps: f64) -> Gains {
         of_law!(self.rounded(gains, qpps))
+    }
+
+    fn steps_around(&self, gains: &Gains, qpps: f64) -> Vec<Gains> {
+        of_law!(self.steps_around(gains, qpps))
     }
 
     fn sum_bounds(&self, wanted: f64) -> Vec<f64> {
@@ -358,6 +369,13 @@ impl<A: LeadingLaw, P: LawPart> LawProbe for Both<A, P> {
         is_position: bool,
     ) -> Result<Option<Self::Findings>, Cause> {
         A::probe(guard, &held.first, &|one| write(Either::First(one)), start_duty, is_position)
+    }
+}
+
+/// Joined laws stand first for a third.
+impl<A: LeadingLaw, P: LawPart> LeadingLaw for Both<A, P> {
+    fn standing_in(rate_hz: u32) -> Self {
+        Self { first: A::standing_in(rate_hz), second: P::default() }
     }
 }
 

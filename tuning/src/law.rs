@@ -18,6 +18,8 @@ use std::fmt::Debug;
 /// Properties of a law that runs and designs go by.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facts {
+    /// The controller takes a duty. Where it does not, its loop always has the motor, and all that is learned of it is learned from moves.
+    pub has_duty: bool,
     /// There is a velocity loop under the position loop.
     pub has_cascade: bool,
     /// What the manual does not say of the law can be read off the duty that it gives at a standstill.
@@ -36,6 +38,8 @@ pub struct Facts {
     pub filters_s: &'static [f64],
     /// Delays that it may have, ticks.
     pub delays_ticks: &'static [f64],
+    /// Ticks in a second that the loop may have, where no manual says it and moves have to; else none.
+    pub rates_hz: &'static [u32],
     /// Lag that the model leaves out, ticks: the winding, a springy shaft.
     pub unmodelled_ticks: f64,
     /// The longest integral time of a position loop that is tried, in time constants of the motor, and the ratio from one to the next.
@@ -116,6 +120,11 @@ pub trait Law:
     fn tick_s(&self) -> f64 {
         1.0 / f64::from(self.rate_hz())
     }
+    /// The law at another rate of [`Facts::rates_hz`].
+    #[must_use]
+    fn at_rate(&self, _rate_hz: u32) -> Self {
+        *self
+    }
     /// How much of the setpoint over QPPS is added to the duty: 1 is all of it.
     fn feed_forward(&self) -> f64;
     /// The limit of the duty by which the current is held, where it is not the current itself that is limited.
@@ -130,6 +139,10 @@ pub trait Law:
     /// Gains as the registers can hold them, where these are so coarse that it makes a difference.
     fn rounded(&self, gains: &Gains, _qpps: f64) -> Gains {
         *gains
+    }
+    /// Where the registers are so coarse that it makes a difference: the gains a step or some around these, themselves among them.
+    fn steps_around(&self, _gains: &Gains, _qpps: f64) -> Vec<Gains> {
+        Vec::new()
     }
     /// The bounds that a position integral may be given where it needs `wanted`, counts x s.
     fn sum_bounds(&self, wanted: f64) -> Vec<f64> {

@@ -27,6 +27,7 @@ pub mod linear;
 mod margin;
 pub mod model;
 pub mod motor_monitor;
+mod moves;
 pub mod open_loop_record;
 mod oscillation;
 mod pace;

@@ -13,6 +13,7 @@ use crate::law::Law;
 use crate::law_probe::LawProbe;
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::model::{Gains, Lag, Pid, PlantModel};
+use crate::moves::by_moves;
 use crate::open_loop_record::OpenLoopRecord;
 pub use crate::proposal::{design_for, propose};
 use crate::record::{Entry, Recorder};
@@ -146,6 +147,10 @@ fn run<L: LawProbe>(
     report: &mut Report<L>,
 ) -> Result<(), Cause> {
     let request = &of_unit(guard, request, report)?;
+    if !guard.facts.has_duty {
+        // Its loop has the motor all the time and each place comes with its time, so that a late answer says no less.
+        return by_moves(guard, request, report);
+    }
     if request.method == Method::Velocity && guard.setup.encoder == EncoderClass::AbsoluteWrapping {
         return Err(Cause::WrappingEncoder);
     }
@@ -260,12 +265,15 @@ fn of_unit<L: Law>(
     request: &Request<L>,
     report: &mut Report<L>,
 ) -> Result<Request<L>, Cause> {
-    if request.method == Method::Piv && !guard.facts.has_cascade {
+    // Where all is learned from moves there is one position loop, and its integral is what a cascade would have been asked for.
+    let method =
+        if guard.facts.has_duty || request.method != Method::Piv { request.method } else { Method::Pid };
+    if method == Method::Piv && !guard.facts.has_cascade {
         return Err(Cause::NoSuchLoop);
     }
     let law = request.law.of_unit(&guard.setup.held);
-    report.request.law = law;
-    Ok(Request { law, ..*request })
+    (report.request.law, report.request.method) = (law, method);
+    Ok(Request { law, method, ..*request })
 }
 
 /// The width that fits into the travel window around where the axis stands; from near an end it goes to the middle first.

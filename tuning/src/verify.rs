@@ -60,6 +60,8 @@ const MOST_OF_ROOM: f64 = 0.6;
 const WATCH_S: f64 = 0.6;
 /// How often the gains may be lowered.
 const MOST_BACK_OFFS: usize = 3;
+/// Overshoot that gains which cannot be lowered further may show where no reading of the duty says more.
+const MOST_UNSEEN_OVERSHOOT: f64 = 0.10;
 /// What lowering them means.
 const BACK_OFF: f64 = 0.7;
 
@@ -163,7 +165,9 @@ fn try_until_smooth<L: Law>(
             continue;
         }
         warn_of_lowering(report);
-        if is_bearable(&measured) && smoothest.is_none_or(|known| excess < known.0) {
+        let is_bearable =
+            is_bearable(&measured) && (guard.facts.has_duty || measured.overshoot <= MOST_UNSEEN_OVERSHOOT);
+        if is_bearable && smoothest.is_none_or(|known| excess < known.0) {
             smoothest = Some((excess, design, measured));
         }
         if back_offs < MOST_BACK_OFFS {
@@ -253,7 +257,7 @@ fn with_deadzone<L: Law>(
     report: &mut Report<L>,
 ) -> Result<Option<Design>, Cause> {
     let hunts = design.gains.position.is_some() && measured.ripple > MOST_POSITION_RIPPLE;
-    if !hunts || report.backlash.is_some() {
+    if !hunts || report.backlash.is_some() || !guard.facts.has_duty {
         return Ok(None);
     }
     let Some(probe) = report.probe else { return Ok(None) };
@@ -431,6 +435,8 @@ pub(crate) fn try_position<L: Law>(
         let target = start + (share * step).round();
         let begin = guard.now_s();
         guard.position(target, task.qpps as u32)?;
+        // A move of an axis without duty is several commands, of which the last is the move.
+        let begin = if guard.facts.has_duty { begin } else { guard.now_s() };
         let watch_s = if n == 3 { WATCH_S } else { 0.0 };
         guard.poll_for(dwell_s + watch_s, true)?;
         let points: Vec<Point> = guard.points.iter().copied().filter(|p| p.t > begin).collect();

@@ -8,7 +8,7 @@ use brushwork_tests::rust_source::{code_lines, without_tests};
 use brushwork_tests::workspace::{self, DependencyKind, Member, Metadata};
 
 /// The arrows that ship: a crate and the crates of this workspace it may use.
-const ARROWS: [(&str, &[&str]); 35] = [
+const ARROWS: [(&str, &[&str]); 36] = [
     (
         "brushwork",
         &[
@@ -74,6 +74,7 @@ const ARROWS: [(&str, &[&str]); 35] = [
             "brushwork-motion-mind",
             "brushwork-plant",
             "brushwork-script",
+            "brushwork-suprmotr",
             "brushwork-tuning",
             "brushwork-values",
         ],
@@ -94,6 +95,7 @@ const ARROWS: [(&str, &[&str]); 35] = [
             "brushwork-plant",
             "brushwork-raster",
             "brushwork-script",
+            "brushwork-suprmotr",
             "brushwork-suprmotr-client",
             "brushwork-suprmotr-macros",
             "brushwork-suprmotr-wire",
@@ -113,6 +115,9 @@ const ARROWS: [(&str, &[&str]); 35] = [
             "brushwork-motion-mind-sim",
             "brushwork-motion-mind-wire",
             "brushwork-plant",
+            "brushwork-suprmotr-axis",
+            "brushwork-suprmotr-sim",
+            "brushwork-suprmotr-wire",
             "brushwork-tuning",
             "brushwork-values",
         ],
@@ -181,6 +186,7 @@ const ARROWS: [(&str, &[&str]); 35] = [
     ("brushwork-motion-mind-client", &["brushwork-link", "brushwork-motion-mind-wire", "brushwork-values"]),
     ("brushwork-motion-mind-axis", &["brushwork-motion-mind-wire", "brushwork-tuning"]),
     ("brushwork-motion-mind-sim", &["brushwork-motion-mind-wire", "brushwork-plant", "brushwork-values"]),
+    ("brushwork-suprmotr-axis", &["brushwork-suprmotr-wire", "brushwork-tuning"]),
     ("brushwork-suprmotr-macros", &["brushwork-script", "brushwork-suprmotr-wire"]),
     ("brushwork-suprmotr-sim", &["brushwork-plant", "brushwork-suprmotr-wire", "brushwork-values"]),
     (
@@ -189,10 +195,13 @@ const ARROWS: [(&str, &[&str]); 35] = [
             "brushwork-family",
             "brushwork-link",
             "brushwork-plant",
+            "brushwork-suprmotr-axis",
             "brushwork-suprmotr-client",
             "brushwork-suprmotr-macros",
             "brushwork-suprmotr-sim",
             "brushwork-suprmotr-wire",
+            "brushwork-tuning",
+            "brushwork-values",
         ],
     ),
     ("brushwork-suprmotr-wire", &["brushwork-values"]),
@@ -267,7 +276,6 @@ const TEST_ARROWS: [(&str, &[&str]); 4] = [
             "brushwork-motion-mind-sim",
             "brushwork-motorvator",
             "brushwork-motorvator-sim",
-            "brushwork-suprmotr",
             "brushwork-suprmotr-sim",
         ],
     ),

@@ -38,4 +38,5 @@ mod tuning;
 mod tuning_mind;
 mod tuning_other;
 mod tuning_replay;
+mod tuning_suprmotr;
 mod window;

@@ -118,7 +118,7 @@ fn saved_gains_are_in_ram_and_in_eeprom_with_the_users_time_out_and_the_report_r
     assert!(bench.controller.look(|unit| !is_driven(unit)));
     let [ram, eeprom] = bench.held();
     assert_eq!((ram.1, eeprom.1), (USERS_MS, USERS_MS));
-    match report.proposed.first.velocity {
+    match report.proposed.first.first.velocity {
         Some(new) if report.verdict != Verdict::Refused => {
             assert_eq!(gains(&ram.0), [new.p, new.i, new.d, new.qpps]);
             assert_eq!(gains(&eeprom.0), gains(&ram.0));

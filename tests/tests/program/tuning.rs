@@ -182,7 +182,7 @@ fn a_run_that_keeps_its_gains_leaves_them_in_ram_and_the_users_time_out_in_force
     let (before, timeout_ms) = settings(&link);
     let request = Tuning { keep: true, ..velocity() };
     let report = tuned(&mut link, request, |_| {}).expect("a report");
-    let new = report.proposed.first.velocity.expect("gains");
+    let new = report.proposed.first.first.velocity.expect("gains");
     let (after, timeout_after_ms) = settings(&link);
     assert_eq!((after.velocity_p_raw, after.velocity_i_raw, after.qpps), (new.p, new.i, new.qpps));
     assert_ne!(after.qpps, before.qpps);
@@ -438,7 +438,7 @@ fn gains_that_were_kept_and_saved_are_there_after_a_power_cycle_and_so_is_the_us
     let mut link = connected();
     let (_, timeout_ms) = settings(&link);
     let report = tuned(&mut link, Tuning { keep: true, ..velocity() }, |_| {}).expect("a report");
-    let new = report.proposed.first.velocity.expect("gains");
+    let new = report.proposed.first.first.velocity.expect("gains");
     let table = SettingsTable::new(subject());
     let options = WriteOptions { own_stream: Some(Stream::Usb), simulated: true, as_read: false };
     let saving = Job::new(Said::Save, ms(60_000), move |wire| {

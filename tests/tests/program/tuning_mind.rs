@@ -129,7 +129,7 @@ fn each_loop_is_tuned_through_the_device_thread_replayed_to_the_bit_and_nothing_
         let report = tuned(&mut link, of(method), |_| {}).expect("the run left its report");
         let place = format!("{protocol:?} {method:?}: {:?} {:?}", report.verdict, report.causes);
         assert_ne!(report.verdict, Verdict::Refused, "{place}");
-        assert!(report.proposed.second.motion_mind.is_some(), "{place}");
+        assert!(report.proposed.first.second.motion_mind.is_some(), "{place}");
         assert!(report.replay().as_ref() == Some(&report), "{place}: the replay differs");
         assert_eq!(registers(&link), before, "{place}");
         assert_eq!(eeprom_writes(&link), 0, "{place}");
@@ -141,7 +141,7 @@ fn gains_that_are_kept_stay_in_ram_and_the_limits_are_the_users_again() {
     let mut link = connected(Protocol::Binary);
     let before = registers(&link);
     let report = tuned(&mut link, Tuning { keep: true, ..of(Method::Pd) }, |_| {}).expect("a report");
-    let kept = report.proposed.second.motion_mind.expect("gains");
+    let kept = report.proposed.first.second.motion_mind.expect("gains");
     let now = registers(&link);
     let proposed = [kept.pterm, kept.iterm, kept.dterm, u16::from(kept.pidscalar)].map(i64::from);
     assert_eq!(now[2..6], proposed);

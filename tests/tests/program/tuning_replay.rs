@@ -40,8 +40,12 @@ fn report(name: &str, plant: usize, method: Method, level: f64) -> Report {
     if std::env::var_os("UPDATE_REPORTS").is_some() {
         let plant = specimen(7, plant);
         let request = Request { level, ..request_of(&plant, method) };
-        file::write(&tune(&mut Joined::first(Box::new(Unit::axis(&plant))), &request), &path, false)
-            .expect("the folder is in the repository");
+        file::write(
+            &tune(&mut Joined::first(Box::new(Joined::first(Box::new(Unit::axis(&plant))))), &request),
+            &path,
+            false,
+        )
+        .expect("the folder is in the repository");
     }
     file::read(&path).expect("it is in the repository")
 }
@@ -54,7 +58,8 @@ fn kept_reports_replay_to_the_last_bit() {
         let again = kept.replay_or_stray().unwrap_or_else(|entry| {
             panic!("{name}: the tuner asks for another step at entry {entry}; record it anew (see the head of this file)")
         });
-        let gains = |report: &Report| (report.proposed.first.velocity, report.proposed.first.position);
+        let gains =
+            |report: &Report| (report.proposed.first.first.velocity, report.proposed.first.first.position);
         assert_eq!(gains(&again), gains(&kept), "{name}");
         assert!(
             again == kept,

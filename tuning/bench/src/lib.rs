@@ -16,6 +16,7 @@ pub mod population;
 mod quantile;
 pub mod reject;
 pub mod run;
+pub mod suprmotr;
 pub mod table;
 pub mod trial;
 pub mod truth;

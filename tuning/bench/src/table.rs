@@ -166,7 +166,8 @@ pub fn table<U: Unit>(seed: u64, cases: &[Case<U>], faults: bool) -> Table {
         }
     }
     let mut identification = identification(cases, &velocity_reports);
-    identification.ms_varied_p95 = tasks["velocity"].first().map_or(0.0, |row: &Row| row.ms_varied_p95);
+    identification.ms_varied_p95 =
+        tasks.get("velocity").and_then(|rows| rows.first()).map_or(0.0, |row: &Row| row.ms_varied_p95);
     let plants = || cases.iter().map(|case| case.under_test.specimen.clone()).collect::<Vec<_>>();
     let faults = if faults { fault_rows(&plants()) } else { Vec::new() };
     let absolute = absolute_rows::<U>(seed, cases.len() / SHARE_OF_ABSOLUTE);

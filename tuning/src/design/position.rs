@@ -30,6 +30,9 @@ const INNER_SHARES: [f64; 4] = [1.0, 0.7, 0.4, 0.2];
 /// Dead zone around the backlash of the mechanics, and of an integral that would hunt without one, counts.
 const BACKLASH_MARGIN: f64 = 2.0;
 const INTEGRAL_DEADZONE: f64 = 1.0;
+/// How often coarse gains go on by a step at the most, and how much softer they become where none keeps its bounds.
+const MOST_STEPS: usize = 24;
+const SOFTER: f64 = 0.8;
 
 /// `v = P e + D de/dt`, duty = v / QPPS: the simple PD system.
 #[must_use]
@@ -38,7 +41,7 @@ pub fn design_pd<L: Law>(task: &Task<L>) -> Option<Design> {
     let loops = Loops::new(task);
     let base = Gains { deadzone_counts: deadzone(task), ..Gains::default() };
     let best = search_pd(&loops, task, base)?;
-    let best = refine(&loops, task, best);
+    let best = stepped(&loops, task, refine(&loops, task, best), false)?;
     finish(&loops, task, Some(best).filter(|best| loops.stable(task, &best.gains)))
 }
 
@@ -71,8 +74,42 @@ pub fn design_pid<L: Law>(task: &Task<L>) -> Option<Design> {
             }
         }
     }
-    let best = refine(&loops, task, best);
+    let best = stepped(&loops, task, refine(&loops, task, best), true)?;
     finish(&loops, task, Some(best).filter(|best| loops.stable(task, &best.gains)))
+}
+
+/// The best of the steps around gains that registers round, going on from step to step as long as that pays; the same where they are fine. `None`
+/// where all of them break a bound.
+fn stepped<L: Law>(loops: &Loops, task: &Task<L>, best: Candidate, has_integral: bool) -> Option<Candidate> {
+    if task.law.steps_around(&best.gains, task.qpps).is_empty() {
+        return Some(best);
+    }
+    let is_allowed = |gains: &Gains| {
+        let has_any = gains.position.is_some_and(|position| position.i != 0.0);
+        (has_integral || !has_any) && loops.within(task, gains).is_some() && loops.stable(task, gains)
+    };
+    let mut found = Some(candidate(task, best.gains)).filter(|rounded| is_allowed(&rounded.gains));
+    let mut at = best.gains;
+    for _ in 0..MOST_STEPS {
+        let before = found.as_ref().map_or(f64::INFINITY, |best| best.cost);
+        for gains in task.law.steps_around(&at, task.qpps) {
+            if is_allowed(&gains) {
+                found = better(found, candidate(task, gains));
+            }
+        }
+        match &found {
+            Some(best) if best.cost < before => at = best.gains,
+            Some(_) => break,
+            // Softer all over, as long as there is something to make softer.
+            None => {
+                let position = at.position?;
+                let softer = |gain: f64| SOFTER * gain;
+                let pid = Pid { p: softer(position.p), i: softer(position.i), d: softer(position.d) };
+                at = Gains { position: Some(pid), ..at };
+            }
+        }
+    }
+    found
 }
 
 /// P over the velocity PI, both searched together.

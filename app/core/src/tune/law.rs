@@ -7,7 +7,10 @@ use brushwork_tuning::tune::{Excitation, Method};
 use brushwork_values::Motor;
 
 /// All of them.
-pub type Families = OneOf<brushwork_mcp::McpTuned, brushwork_motion_mind::MotionMindTuned>;
+pub type Families = OneOf<
+    OneOf<brushwork_mcp::McpTuned, brushwork_motion_mind::MotionMindTuned>,
+    brushwork_suprmotr::SuprMotrTuned,
+>;
 /// The law of whatever controller is at the wire.
 pub type AnyLaw = <Families as Tuned>::Law;
 /// Its registers.

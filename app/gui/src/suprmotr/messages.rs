@@ -20,6 +20,7 @@ messages! {
         SwitchOff { channel: u8 } "Switch channel {channel} off",
         Line { name: &'static str, state: &'static str } "{name}: {state}",
         Sets { steps: u8 } "SO {steps}",
+        Pattern { word: u16, bits: String } "CP {word}: channels 16 to 1 give {bits}. Tick the box to set them; the form of CP is assumed",
         Volts { volts: f64, steps: u8 } "{volts:.2} V ({steps})",
         NotLive { reads: String } "{reads}, not live",
         Analog { name: &'static str, reads: String } "{name}: {reads}",

@@ -83,7 +83,14 @@ fn run(bench: &mut Bench, which: Loop) -> Run {
 }
 
 fn proposed(bench: &mut Bench, which: Loop) -> MotionMindRegisters {
-    run(bench, which).shown.expect("gains").registers.second.motion_mind.expect("registers of a Motion Mind")
+    run(bench, which)
+        .shown
+        .expect("gains")
+        .registers
+        .first
+        .second
+        .motion_mind
+        .expect("registers of a Motion Mind")
 }
 
 /// Presses what may have to be scrolled to first, as with a wheel.

@@ -130,12 +130,12 @@ fn gains_sent(bench: &Bench) -> MotionSettings {
 #[track_caller]
 fn assert_holds(bench: &Bench, wanted: AnyRegisters) {
     let now = held(bench, Motor::M1);
-    let velocity = wanted.first.velocity.expect("it has a velocity loop");
+    let velocity = wanted.first.first.velocity.expect("it has a velocity loop");
     assert_eq!(
         (now.velocity_p_raw, now.velocity_i_raw, now.velocity_d_raw, now.qpps),
         (velocity.p, velocity.i, velocity.d, velocity.qpps)
     );
-    if let Some(position) = wanted.first.position {
+    if let Some(position) = wanted.first.first.position {
         assert_eq!(
             (now.position_p_raw, now.position_i_raw, now.position_d_raw, now.position_max_i),
             (position.p, position.i, position.d, position.max_i)
@@ -203,9 +203,9 @@ fn a_position_loop_is_tuned_by_each_method_and_applied_whole() {
         assert_ne!(tuned.report.verdict, Verdict::Refused, "{method}: {:?}", tuned.report.causes);
         assert!(bench.sees_part("Measured position over the predicted one"), "{method}");
         let gains = proposed(&mut bench, Loop::Position);
-        let gives_speed = gains.first.velocity.is_some_and(|velocity| velocity.p > 0);
+        let gives_speed = gains.first.first.velocity.is_some_and(|velocity| velocity.p > 0);
         assert_eq!(gives_speed, has_velocity, "{method}: {gains:?}");
-        assert!(gains.first.position.is_some_and(|position| position.p > 0), "{method}: {gains:?}");
+        assert!(gains.first.first.position.is_some_and(|position| position.p > 0), "{method}: {gains:?}");
         bench.press("Apply (RAM)");
         bench.pass_ms(4000);
         assert_holds(&bench, gains);

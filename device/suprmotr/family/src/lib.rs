@@ -5,6 +5,9 @@
 pub mod rehearsal;
 pub mod sim_spec;
 mod simulator;
+pub mod transfer;
+mod tuned;
 
 pub use sim_spec::SuprMotrSpec;
 pub use simulator::SuprMotrSimulator;
+pub use tuned::SuprMotrTuned;

@@ -160,6 +160,11 @@ impl SuprMotr {
         self.running.axis.following_error()
     }
 
+    /// What the loop gives, in steps of the bridge.
+    pub fn drive(&self) -> i64 {
+        self.running.axis.drive()
+    }
+
     /// Whether no move is in process.
     pub fn is_motion_complete(&self) -> bool {
         self.running.axis.is_complete()
@@ -208,6 +213,11 @@ impl SuprMotr {
     /// Takes what was noted since the last time.
     pub fn take_trace(&mut self) -> Vec<Step> {
         std::mem::take(&mut self.trace)
+    }
+
+    /// What it works with now.
+    pub fn parameters(&self) -> &Parameters {
+        &self.running.parameters
     }
 
     /// What outlives its power.

@@ -5,11 +5,10 @@
 use std::time::{Duration, Instant};
 
 use brushwork_link::device::{Event, PollRate, Request};
-use brushwork_suprmotr_client::SuprMotrFacts;
-use brushwork_suprmotr_macros::{Checked, check, written};
-use brushwork_suprmotr_wire::{
-    Command, EXECUTE, Line, Mnemonic, Progress, Radix, Report, Single, operation, parse_report,
-};
+use brushwork_suprmotr::transfer::{Done, Job, Step, Transfer, Trouble};
+use brushwork_suprmotr_client::is_suprmotr;
+use brushwork_suprmotr_macros::{Checked, Macro, check, written};
+use brushwork_suprmotr_wire::{Command, Line};
 
 use super::args::{ReadArgs, UploadArgs};
 use super::source::{Source, is_standard};
@@ -31,20 +30,21 @@ pub fn upload(args: &UploadArgs, out: &mut Output, interrupt: &Interrupt) -> Res
     if !source.checked.is_right() {
         return Err(Exit::ScriptWrong);
     }
+    let macros = &source.checked.macros;
+    let tell = |out: &mut Output, known: &Macro| {
+        out.line(format!("macro {} {}: stored and read back", known.number, known.name))
+    };
     let mut board = Board::connect(&args.connect, interrupt)?;
-    board.check_idle()?;
-    for known in &source.checked.macros {
-        let mut line = known.as_line().text(board.radix).into_bytes();
-        line.push(EXECUTE);
-        board.exchange(line)?;
-        let told = board.macros_told(known.number)?;
-        let is_there = told.iter().any(|line| *line == known.as_line());
-        if !is_there {
-            let name = known.name.clone();
-            return Err(Exit::NotTaken.saying(CliMacroMessage::NotStored { name, number: known.number }));
-        }
-        out.line(format!("macro {} {}: stored and read back", known.number, known.name))?;
+    let job = Job::Store(macros.iter().map(Macro::as_line).collect());
+    // They are told in their order, the last by the end of the job.
+    let mut left = macros.iter();
+    let ended = board.carry_out(job, &mut |_| Ok(left.next().map_or(Ok(()), |known| tell(out, known))?))?;
+    if let Err(Trouble::NotStored(number)) = ended {
+        let name = left.next().map(|known| known.name.clone()).unwrap_or_default();
+        return Err(Exit::NotTaken.saying(CliMacroMessage::NotStored { name, number }));
     }
+    done(ended)?;
+    left.try_for_each(|known| tell(out, known))?;
     Ok(Exit::Done)
 }
 
@@ -56,8 +56,10 @@ pub fn read(args: &ReadArgs, out: &mut Output, interrupt: &Interrupt) -> Result<
         file.check()?;
     }
     let mut board = Board::connect(&args.connect, interrupt)?;
-    board.check_idle()?;
-    let told = board.macros_told(0)?;
+    let told: Vec<Line> = match done(board.carry_out(Job::List, &mut |_| Ok(()))?)? {
+        Done::Listed(lines) => lines,
+        Done::Stored(_) | Done::Called(_) => Vec::new(),
+    };
     let macros: Vec<(u8, Vec<Command>)> =
         told.into_iter().filter_map(|line| Some((line.defines?, line.commands))).collect();
     // A file that is replaced gives its names to the macros of the same numbers.
@@ -78,54 +80,49 @@ fn names_in(args: &ReadArgs) -> Checked {
     brushwork_link::bounded::read_text(&args.file).map(|text| check(&text)).unwrap_or_default()
 }
 
+/// The end of a job, where nothing stood in its way.
+fn done(ended: Result<Done, Trouble>) -> Result<Done, Exit> {
+    ended.map_err(|trouble| match trouble {
+        Trouble::MacroRuns => Exit::Refused.saying(CliMacroMessage::MacroRuns),
+        Trouble::NoReport(mnemonic) => {
+            Exit::NoLink.saying(CliMacroMessage::NoReport { command: mnemonic.row().title.to_owned() })
+        }
+        Trouble::NotStored(number) => {
+            Exit::NotTaken.saying(CliMacroMessage::NotStored { name: String::new(), number })
+        }
+    })
+}
+
 /// A controller that is spoken to line by line.
 struct Board<'a> {
     client: Client,
     interrupt: &'a Interrupt,
-    radix: Radix,
     next_id: u64,
 }
 
 impl<'a> Board<'a> {
     fn connect(connect: &ConnectArgs, interrupt: &'a Interrupt) -> Result<Self, Exit> {
         let client = Client::connect(connect, PollRate::Off, interrupt)?;
-        let Some(facts) = SuprMotrFacts::of(&client.identity) else {
+        if !is_suprmotr(&client.identity) {
             let title = client.identity.title().to_owned();
             return Err(Exit::Refused.saying(CliMacroMessage::KeepsNone { title }));
-        };
-        Ok(Self { client, interrupt, radix: facts.radix(), next_id: 1 })
+        }
+        Ok(Self { client, interrupt, next_id: 1 })
     }
 
-    /// A line would end a macro that runs.
-    fn check_idle(&mut self) -> Result<(), Exit> {
-        let reply = self.exchange(vec![Single::Status.character()])?;
-        let report = self.report(&Command::plain(Mnemonic::TS), &[Single::Status.character()], &reply)?;
-        let runs = report
-            .status()
-            .is_some_and(|status| status.operation & (operation::MACRO | operation::WAIT) != 0);
-        if runs { Err(Exit::Refused.saying(CliMacroMessage::MacroRuns)) } else { Ok(()) }
-    }
-
-    /// A macro as the controller has it, or all with 0; macro 0 has a command of its own, but stands among all too.
-    fn macros_told(&mut self, number: u8) -> Result<Vec<Line>, Exit> {
-        let command = if number == 0 {
-            Command::plain(Mnemonic::TM)
-        } else {
-            Command::with(Mnemonic::TM, number.into())
-        };
-        let mut line = command.text(self.radix).into_bytes();
-        line.push(EXECUTE);
-        let reply = self.exchange(line.clone())?;
-        let report = self.report(&command, &line, &reply)?;
-        Ok(report.macros().cloned().collect())
-    }
-
-    fn report(&self, command: &Command, sent: &[u8], reply: &[u8]) -> Result<Report, Exit> {
-        match parse_report(command, self.radix, sent, reply) {
-            Progress::Done { report, .. } => Ok(report),
-            Progress::Incomplete | Progress::Bad(_) => {
-                let command = command.mnemonic.row().title.to_owned();
-                Err(Exit::NoLink.saying(CliMacroMessage::NoReport { command }))
+    /// Does something with its macros; `stored` is told each that was, but for the last.
+    fn carry_out(
+        &mut self,
+        job: Job,
+        stored: &mut dyn FnMut(u8) -> Result<(), Exit>,
+    ) -> Result<Result<Done, Trouble>, Exit> {
+        let mut transfer = Transfer::new(job);
+        loop {
+            let reply = self.exchange(transfer.next().to_vec())?;
+            match transfer.answered(&reply) {
+                Step::GoesOn => {}
+                Step::Stored(number) => stored(number)?,
+                Step::Ended(ended) => return Ok(ended),
             }
         }
     }

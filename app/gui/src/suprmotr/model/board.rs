@@ -1,17 +1,11 @@
-//! What is done with the macros on a board, line by line: read, stored and read back, compared with a file, run.
-//!
-//! A line ends a macro that runs, so the status is asked first, by its single character, and nothing is sent while it tells of a macro or a wait.
-
-use std::collections::VecDeque;
+//! What is done with the macros on a board and the file in front: read, stored and read back, compared, run.
 
 use brushwork_link::device::{Event, Identity, Request};
-use brushwork_suprmotr_client::SuprMotrFacts;
+use brushwork_suprmotr::transfer::{self, Done, Step, Transfer, Trouble};
+use brushwork_suprmotr_client::is_suprmotr;
 use brushwork_suprmotr_macros::{Checked, Macro, check, written};
-use brushwork_suprmotr_wire::{
-    Command, EXECUTE, Line, Mnemonic, Progress, Radix, Report, Single, operation, parse_report,
-};
+use brushwork_suprmotr_wire::{Command, Line};
 
-use super::channels::holds_lines;
 use crate::mcl::DocId;
 use crate::suprmotr::messages::MacrosMessage;
 
@@ -39,33 +33,13 @@ pub enum Job {
     Run(u8),
 }
 
-/// What waits for its answer.
-#[derive(Clone, Debug, PartialEq, Eq)]
-enum Stage {
-    /// `%`: whether lines may be sent.
-    Status,
-    /// The list of all macros.
-    List,
-    /// A definition.
-    Define(Line),
-    /// A macro that was defined, as the board has it.
-    Back(Line),
-    /// A call.
-    Call(u8),
-}
-
 /// A job under way.
 #[derive(Debug)]
 struct Work {
     job: Job,
-    /// What comes next.
-    next: Stage,
-    left: VecDeque<Line>,
-    stored: usize,
-    /// How the board writes its numbers, as its status said.
-    radix: Radix,
-    /// The line that waits for its answer, with its number. The link answers each in its time.
-    waiting: Option<(u64, Vec<u8>)>,
+    transfer: Transfer,
+    /// The number of what waits for its answer. The link answers each in its time.
+    waiting: Option<u64>,
 }
 
 /// What came of a job.
@@ -118,7 +92,8 @@ impl Board {
         Some(match work.job {
             Job::Read | Job::Compare => "Reading the macros of the board …".to_owned(),
             Job::Store => {
-                MacrosMessage::Storing { stored: work.stored, of: work.stored + work.left.len() }.to_string()
+                let (stored, of) = work.transfer.stored();
+                MacrosMessage::Storing { stored, of }.to_string()
             }
             Job::Run(number) => MacrosMessage::Calling { number }.to_string(),
         })
@@ -129,24 +104,22 @@ impl Board {
         if self.work.is_some() {
             return;
         }
-        let macros = self.file().filter(|_| job == Job::Store).map_or(&[][..], |file| &file.macros);
-        let left = macros.iter().map(Macro::as_line).collect();
-        self.work =
-            Some(Work { job, next: Stage::Status, left, stored: 0, radix: Radix::Decimal, waiting: None });
+        let lines = || self.file().map_or(&[][..], |file| &file.macros).iter().map(Macro::as_line).collect();
+        let transfer = Transfer::new(match job {
+            Job::Read | Job::Compare => transfer::Job::List,
+            Job::Store => transfer::Job::Store(lines()),
+            Job::Run(number) => transfer::Job::Call(number),
+        });
+        self.work = Some(Work { job, transfer, waiting: None });
     }
 
     /// What is to be sent now.
     pub fn next(&mut self, identity: &Identity) -> Option<Request> {
-        SuprMotrFacts::of(identity)?;
-        let work = self.work.as_mut()?;
-        if work.waiting.is_some() {
-            return None;
-        }
-        let bytes = bytes_of(&work.next, work.radix);
+        let work = self.work.as_mut().filter(|work| is_suprmotr(identity) && work.waiting.is_none())?;
         self.asked += 1;
         let id = FIRST_ID + self.asked;
-        work.waiting = Some((id, bytes.clone()));
-        Some(Request::Raw { id, bytes })
+        work.waiting = Some(id);
+        Some(Request::Raw { id, bytes: work.transfer.next().to_vec() })
     }
 
     /// The link is busy: the same line is sent again.
@@ -163,63 +136,37 @@ impl Board {
             return false;
         }
         let Some(work) = &mut self.work else { return true };
-        let Some((_, bytes)) = work.waiting.take_if(|(waiting, ..)| waiting == id) else { return true };
-        match result {
-            Ok(reply) => self.answered(&bytes, reply),
-            Err(why) => self.end(Outcome::Failed(why.to_string())),
+        if work.waiting.take_if(|waiting| waiting == id).is_none() {
+            return true;
         }
-        true
-    }
-
-    fn answered(&mut self, sent: &[u8], reply: &[u8]) {
-        let Some(work) = &mut self.work else { return };
-        let heard = heard(&work.next, work.radix, sent, reply);
-        let after = match (&work.next, heard) {
-            (Stage::Define(line), _) => Ok(Stage::Back(line.clone())),
-            (Stage::Call(number), _) => {
-                Err(Outcome::Done(MacrosMessage::Called { number: *number }.to_string()))
-            }
-            (Stage::Status | Stage::List | Stage::Back(_), None) => Err(Outcome::Failed(
-                "The board's answer was not understood. Nothing more was sent.".to_owned(),
-            )),
-            (Stage::Status, Some(report)) => {
-                let status = report.status().unwrap_or_default();
-                let is_hexadecimal = status.operation & operation::HEXADECIMAL != 0;
-                work.radix = if is_hexadecimal { Radix::Hexadecimal } else { Radix::Decimal };
-                if holds_lines(status) {
-                    Err(Outcome::Failed(
-                        "A macro or a wait is in process, which a line would end. Stop it first.".to_owned(),
-                    ))
-                } else {
-                    match work.job {
-                        Job::Read | Job::Compare => Ok(Stage::List),
-                        Job::Store => next_of(work),
-                        Job::Run(number) => Ok(Stage::Call(number)),
-                    }
-                }
-            }
-            (Stage::Back(line), Some(report)) => {
-                if report.macros().any(|told| told == line) {
-                    work.stored += 1;
-                    next_of(work)
-                } else {
-                    let number = line.defines.unwrap_or_default();
-                    Err(Outcome::Failed(MacrosMessage::NotStored { number }.to_string()))
-                }
-            }
-            (Stage::List, Some(report)) => {
-                let (told, job) = (report.macros().cloned().collect::<Vec<_>>(), work.job.clone());
-                Err(self.listed(&told, &job))
+        let step = match result {
+            Ok(reply) => work.transfer.answered(reply),
+            Err(why) => {
+                self.end(Outcome::Failed(why.to_string()));
+                return true;
             }
         };
-        match after {
-            Ok(stage) => {
-                if let Some(work) = &mut self.work {
-                    work.next = stage;
+        if let Step::Ended(ended) = step {
+            let job = work.job.clone();
+            let outcome = match ended {
+                Ok(Done::Listed(told)) => self.listed(&told, &job),
+                Ok(Done::Stored(stored)) => {
+                    Outcome::Done(MacrosMessage::Stored { macros: counted(stored) }.to_string())
                 }
-            }
-            Err(outcome) => self.end(outcome),
+                Ok(Done::Called(number)) => Outcome::Done(MacrosMessage::Called { number }.to_string()),
+                Err(Trouble::MacroRuns) => Outcome::Failed(
+                    "A macro or a wait is in process, which a line would end. Stop it first.".to_owned(),
+                ),
+                Err(Trouble::NoReport(_)) => Outcome::Failed(
+                    "The board's answer was not understood. Nothing more was sent.".to_owned(),
+                ),
+                Err(Trouble::NotStored(number)) => {
+                    Outcome::Failed(MacrosMessage::NotStored { number }.to_string())
+                }
+            };
+            self.end(outcome);
         }
+        true
     }
 
     /// What a list of all macros is good for.
@@ -252,48 +199,6 @@ impl Board {
         if self.work.is_some() {
             self.end(Outcome::Failed("The link ended before the board answered.".to_owned()));
         }
-    }
-}
-
-/// The macro that is stored next; without one all are.
-fn next_of(work: &mut Work) -> Result<Stage, Outcome> {
-    let stored = work.stored;
-    work.left
-        .pop_front()
-        .map(Stage::Define)
-        .ok_or_else(|| Outcome::Done(MacrosMessage::Stored { macros: counted(stored) }.to_string()))
-}
-
-/// The command whose report is waited for.
-fn question(stage: &Stage) -> Option<Command> {
-    match stage {
-        Stage::Status => Some(Command::plain(Mnemonic::TS)),
-        Stage::List => Some(Command::plain(Mnemonic::TM)),
-        Stage::Back(Line { defines: Some(0), .. }) => Some(Command::plain(Mnemonic::TZ)),
-        Stage::Back(line) => Some(Command::with(Mnemonic::TM, line.defines.unwrap_or_default().into())),
-        Stage::Define(_) | Stage::Call(_) => None,
-    }
-}
-
-fn bytes_of(stage: &Stage, radix: Radix) -> Vec<u8> {
-    let line = match stage {
-        Stage::Status => return vec![Single::Status.character()],
-        Stage::List | Stage::Back(_) => {
-            question(stage).map(|command| command.text(radix)).unwrap_or_default()
-        }
-        Stage::Define(line) => line.text(radix),
-        Stage::Call(number) => Command::with(Mnemonic::MC, (*number).into()).text(radix),
-    };
-    let mut bytes = line.into_bytes();
-    bytes.push(EXECUTE);
-    bytes
-}
-
-/// The report in an answer.
-fn heard(stage: &Stage, radix: Radix, sent: &[u8], reply: &[u8]) -> Option<Report> {
-    match parse_report(&question(stage)?, radix, sent, reply) {
-        Progress::Done { report, .. } => Some(report),
-        Progress::Incomplete | Progress::Bad(_) => None,
     }
 }
 

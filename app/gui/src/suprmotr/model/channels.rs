@@ -40,17 +40,20 @@ pub enum Act {
     Switch(u8, bool),
     /// SO: the analog output, in steps.
     Analog(u8),
+    /// CP: all channels become outputs at once, channel 1 in bit 0.
+    Pattern(u16),
 }
 
 impl Act {
     /// The command with its number.
-    pub const fn command(self) -> (Mnemonic, u8) {
+    pub const fn command(self) -> (Mnemonic, u16) {
         match self {
-            Self::Turn(channel, Direction::Input) => (Mnemonic::CI, channel),
-            Self::Turn(channel, Direction::Output) => (Mnemonic::CT, channel),
-            Self::Switch(channel, true) => (Mnemonic::CN, channel),
-            Self::Switch(channel, false) => (Mnemonic::CF, channel),
-            Self::Analog(steps) => (Mnemonic::SO, steps),
+            Self::Turn(channel, Direction::Input) => (Mnemonic::CI, channel as u16),
+            Self::Turn(channel, Direction::Output) => (Mnemonic::CT, channel as u16),
+            Self::Switch(channel, true) => (Mnemonic::CN, channel as u16),
+            Self::Switch(channel, false) => (Mnemonic::CF, channel as u16),
+            Self::Analog(steps) => (Mnemonic::SO, steps as u16),
+            Self::Pattern(word) => (Mnemonic::CP, word),
         }
     }
 }
@@ -72,6 +75,9 @@ pub struct Channels {
     analog_output: Option<u8>,
     /// What the analog output is to be set to, volts.
     pub wanted_volts: f64,
+    /// What all channels are to give, channel 1 in bit 0; and whether a person has said that all of them may be outputs.
+    pub wanted_pattern: f64,
+    pub accepts_outputs: bool,
     /// Why the last act was not done.
     pub trouble: Option<String>,
     /// The status that was told last, and whose it is.
@@ -186,6 +192,7 @@ impl Channels {
             }
             // What became of them the next reads tell.
             Act::Switch(..) | Act::Analog(_) => {}
+            Act::Pattern(_) => self.directions = [Some(Direction::Output); CHANNELS as usize],
         }
     }
 
@@ -242,6 +249,7 @@ mod tests {
             (Act::Switch(16, true), "CN16"),
             (Act::Switch(16, false), "CF16"),
             (Act::Analog(255), "SO255"),
+            (Act::Pattern(0x8001), "CP32769"),
         ] {
             let (mnemonic, number) = act.command();
             assert_eq!(format!("{}{number}", mnemonic.name()), command);

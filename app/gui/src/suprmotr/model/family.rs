@@ -7,14 +7,16 @@ use brushwork_suprmotr_client::channels::CHANNELS;
 use brushwork_suprmotr_client::{COMPUTED_TARGET, COMPUTED_VELOCITY, SUPRMOTR, SuprMotrFacts};
 use brushwork_suprmotr_macros::MACROS;
 use brushwork_suprmotr_wire::{Effect, Mnemonic, Radix};
+use brushwork_tuning::tune::Method;
 use brushwork_values::Motor;
 
 use super::{SuprMotrConnection, to_send};
 use crate::family::path::{BACK_UP, PathStep, Place, SAVE, ShownBy, Step};
 use crate::family::{Ability, ActiveIndicator, Family, Figure, Figures, Known, Own, SettingsWords, Sliders};
 use crate::messages::NameMessage;
-use crate::model::{IndicatorInfo, IndicatorState, Screen, Simulated, state_of};
+use crate::model::{IndicatorInfo, IndicatorState, Screen, Simulated, Tab, state_of};
 use crate::suprmotr::messages::LineMessage;
+use crate::tune::Loop;
 
 #[derive(Debug)]
 pub struct SuprMotr;
@@ -30,7 +32,7 @@ const PATH: &[PathStep] = &[
     PathStep {
         step: Step::Position,
         shown_by: ShownBy::Settings(&["loop.p", "loop.i", "loop.d"]),
-        place: Place::Screen(Screen::GeneralSettings),
+        place: Place::Drawer(Screen::Position, Tab::Tune),
     },
     SAVE,
     BACK_UP,
@@ -153,6 +155,18 @@ impl Family for SuprMotr {
 
     fn shows_registers(&self, screen: Screen) -> bool {
         screen == Screen::Inputs
+    }
+
+    fn tabs(&self, screen: Screen) -> &'static [Tab] {
+        if screen == Screen::Position { &[Tab::Tune] } else { &[] }
+    }
+
+    /// One loop on the position, and none under it.
+    fn methods(&self, which: Loop) -> &'static [Method] {
+        match which {
+            Loop::Velocity => &[],
+            Loop::Position => &[Method::Pd, Method::Pid],
+        }
     }
 
     fn path(&self) -> &'static [PathStep] {

@@ -27,7 +27,7 @@ impl Default for Terminal {
 pub fn bytes_of(typed: &str) -> Result<Vec<u8>, String> {
     let typed = typed.trim();
     if typed.is_empty() {
-        return Err("Type commands, such as TP or MR 500, WS 100, or one of ' ? \\ % # !".to_owned());
+        return Err("Type commands, such as TP or DV 20000, GV, or one of ' ? \\ % # !".to_owned());
     }
     if !typed.bytes().all(|byte| matches!(byte, b' '..=b'~')) {
         return Err("A line has letters, figures and signs of ASCII alone.".to_owned());

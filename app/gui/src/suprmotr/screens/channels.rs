@@ -62,6 +62,7 @@ pub fn channels_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         let columns = if ui.available_width() < WIDE { 1 } else { 2 };
         ui.columns(columns, |ui| {
             table_ui(&mut ui[0], channels, takes_lines, &mut acts);
+            pattern_ui(&mut ui[0], channels, takes_lines, &mut acts);
             let ui = &mut ui[columns - 1];
             switches_ui(ui, status);
             analog_ui(ui, channels, takes_lines, &mut acts);
@@ -82,6 +83,32 @@ fn table_ui(ui: &mut Ui, channels: &Channels, takes_lines: bool, acts: &mut Vec<
             ui.end_row();
         }
     });
+}
+
+/// All channels at once, by their number as the wire has it (CP).
+fn pattern_ui(ui: &mut Ui, channels: &mut Channels, takes_lines: bool, acts: &mut Vec<Act>) {
+    ui.add_space(6.0);
+    ui.horizontal(|ui| {
+        ui.label("Pattern");
+        let field = Numeric::new("Channel pattern", "", 0.0..=65_535.0, (0, 1.0, 84.0));
+        field.ui(ui, &mut channels.wanted_pattern);
+        let hint = "CP makes an output of every channel, also of those that something else drives: two drivers on one line may damage both";
+        ui.checkbox(&mut channels.accepts_outputs, "All are outputs").on_hover_text(hint);
+        // Whole, and within the field's range.
+        let word = channels.wanted_pattern as u16;
+        let can = takes_lines && channels.accepts_outputs;
+        let response = ui.add_enabled(can, Button::new("Set"));
+        response.widget_info(|| WidgetInfo::labeled(Role::Button, can, "Set the channel pattern"));
+        let hint = LinesMessage::Pattern { word, bits: binary(word) }.to_string();
+        if response.on_hover_text(&hint).on_disabled_hover_text(hint).clicked() {
+            acts.push(Act::Pattern(word));
+        }
+    });
+}
+
+/// Channel 16 first.
+fn binary(word: u16) -> String {
+    format!("{word:016b}")
 }
 
 fn channel_ui(ui: &mut Ui, channels: &Channels, channel: u8, takes_lines: bool, acts: &mut Vec<Act>) {

@@ -43,6 +43,7 @@ const UNDATED_STAMP_S: f64 = 0.0018;
 /// One loop on the position. It filters nothing; assumed: what it computes it gives in the same loop; half a tick for the winding. Ticks
 /// of 5 ms are longer than those that other lags were found with, and a sum that has no fine bound has to grow slowly.
 static FACTS: Facts = Facts {
+    has_duty: true,
     has_cascade: false,
     can_be_probed: false,
     writes_at_rest: true,
@@ -52,6 +53,7 @@ static FACTS: Facts = Facts {
     longest_lag: Lag { filter_s: 0.0, delay_ticks: 1.5 },
     filters_s: &[0.0],
     delays_ticks: &[0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0],
+    rates_hz: &[],
     unmodelled_ticks: 0.33,
     integral_times: (30.0, 0.65),
 };

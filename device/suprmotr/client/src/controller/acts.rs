@@ -126,10 +126,14 @@ impl Controller for SuprMotr {
 }
 
 impl SuprMotr {
-    /// Sends one command: by its character where it has one, so that macros go on; else as a line, which is not sent while a macro or a wait
+    /// Sends one command: by its character where it has one, so that macros go on (AB without its number is `!`); else as a line, which is not sent while a macro or a wait
     /// is in process, but where it is to end it.
     fn carry_out(&mut self, line: &mut Line<'_>, command: Command) -> Result<Answer, ExchangeError> {
         let row = command.row();
+        if command == Command::plain(Mnemonic::AB) {
+            let (status, span) = self.speaker.abort(line)?;
+            return Ok(Answer { values: status_values(status), span });
+        }
         let by_character = Single::ALL.into_iter().find(|single| {
             single.mnemonic() == Some(command.mnemonic)
                 && row.effect == Effect::Report

@@ -68,6 +68,17 @@ impl Speaker {
         Ok((status, span))
     }
 
+    /// Ends the move at once by `!`, with `%` behind it.
+    pub fn abort(&mut self, line: &mut Line<'_>) -> Result<(Status, Span), ExchangeError> {
+        let mut bytes = self.single(Single::Abort);
+        bytes.push(Single::Status.character());
+        let retries = line.retries();
+        let (report, span) = self.exchange(line, &bytes, &Command::plain(Mnemonic::TS), retries, WORK)?;
+        let status = report.status().unwrap_or_default();
+        self.note(status);
+        Ok((status, span))
+    }
+
     /// As [`Speaker::ask_single`], once and with so much time for the answer: is anybody there?
     pub fn probe(self, line: &mut Line<'_>, patience: Duration) -> Result<bool, ExchangeError> {
         let bytes = self.single(Single::Position);

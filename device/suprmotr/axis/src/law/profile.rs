@@ -1,0 +1,52 @@
+//! The trapezoid in time of a move from rest to rest, as DV and DA make it (SuprMotr manual, commands DV, DA, MA).
+
+/// Where the trajectory of a move is.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Profile {
+    /// Counts from end to end, with their sign.
+    pub distance: f64,
+    /// Counts/s at the most, and counts/s^2.
+    pub velocity: f64,
+    pub acceleration: f64,
+}
+
+impl Profile {
+    /// How far it is after a time, counts.
+    pub(super) fn at(&self, elapsed_s: f64) -> f64 {
+        let (way, acceleration) = (self.distance.abs(), self.acceleration);
+        let cruise = self.velocity.min((acceleration * way).sqrt());
+        if cruise <= 0.0 {
+            return 0.0;
+        }
+        let ramp_s = cruise / acceleration;
+        let ends_s = way / cruise + ramp_s;
+        let gone = if elapsed_s >= ends_s {
+            way
+        } else if elapsed_s > ends_s - ramp_s {
+            way - 0.5 * acceleration * (ends_s - elapsed_s).powi(2)
+        } else if elapsed_s > ramp_s {
+            cruise * (elapsed_s - 0.5 * ramp_s)
+        } else {
+            0.5 * acceleration * elapsed_s.max(0.0).powi(2)
+        };
+        gone.copysign(self.distance)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 5000 counts at 20,000 counts/s and 200,000 counts/s^2: 0.1 s and 1000 counts up, as much down, 3000 counts in 0.15 s between.
+    #[test]
+    fn a_long_move_is_a_trapezoid_and_a_short_one_a_triangle() {
+        let long = Profile { distance: -5_000.0, velocity: 20_000.0, acceleration: 200_000.0 };
+        for (at_s, counts) in
+            [(0.0, 0.0), (0.05, 250.0), (0.1, 1_000.0), (0.175, 2_500.0), (0.3, 4_750.0), (0.4, 5_000.0)]
+        {
+            assert!((long.at(at_s) + counts).abs() < 1e-6, "{at_s} s: {}", long.at(at_s));
+        }
+        let short = Profile { distance: 500.0, ..long };
+        assert!((short.at(0.05) - 250.0).abs() < 1e-6 && (short.at(0.0999) - 500.0).abs() < 0.01);
+    }
+}
