@@ -645,6 +645,11 @@ impl<'a, L: Law> ExperimentGuard<'a, L> {
         stall_amps.filter(|stall| limit > 0.0 && *stall > 0.0).map(|stall| limit / stall)
     }
 
+    /// Puts the next poll off.
+    pub(crate) fn defer(&mut self, seconds: f64) {
+        self.next_poll = self.axis.now() + Duration::from_secs_f64(seconds);
+    }
+
     /// Polls for a time.
     pub fn poll_for(&mut self, seconds: f64, with_duty: bool) -> Result<(), Cause> {
         let end = self.now_s() + seconds;

@@ -4,19 +4,23 @@
 
 #![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
 
+/// The families that there is a bench for, in their folders.
+macro_rules! families {
+    ($($family:ident),*) => { $(pub mod $family;)* };
+}
+
+families!(mcp, motion_mind, suprmotr);
+
 mod bounds;
 pub mod faults;
 pub mod judge;
 pub mod line;
-pub mod mcp;
-pub mod motion_mind;
 pub mod optimum;
 pub mod oracle;
 pub mod population;
 mod quantile;
 pub mod reject;
 pub mod run;
-pub mod suprmotr;
 pub mod table;
 pub mod trial;
 pub mod truth;

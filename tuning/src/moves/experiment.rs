@@ -30,6 +30,8 @@ const ROOM_SHARE: f64 = 0.4;
 /// Polls within so many counts of each other are a standstill.
 const STILL_POLLS: usize = 4;
 const STILL_COUNTS: f64 = 1.0;
+/// How long after a command the first poll comes, s: on a line without jitter all polls would else see the same places of every move.
+const PHASES_S: [f64; 5] = [0.0, 0.012, 0.004, 0.016, 0.008];
 /// A command that takes so much longer than the quickest was sent again, s; and the fewest polls of a piece.
 const RETRIED_S: f64 = 0.035;
 const LEAST_POINTS: usize = 8;
@@ -184,6 +186,7 @@ pub(super) fn strokes<L: Law>(
         let asked_s = guard.now_s();
         guard.position(target, u32::MAX)?;
         given.push(Given { asked_s, took_s: guard.now_s() - asked_s, target });
+        guard.defer(PHASES_S[n % PHASES_S.len()]);
         let until_s = guard.now_s() + longest_s;
         // Stays of uneven length: polls come at all phases of the moves.
         let least_s = guard.now_s() + 0.12 + 0.007 * (n % 4) as f64;

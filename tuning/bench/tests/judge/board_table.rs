@@ -104,3 +104,31 @@ fn a_replay_of_a_board_gives_the_same_report_to_the_last_bit_also_after_a_file()
     let read: Report<BoardSetup> = serde_json::from_str(&text).expect("and reads back");
     assert!(read == report && read.replay().as_ref() == Some(&report));
 }
+
+#[test]
+fn the_slide_that_is_simulated_by_default_is_tuned_at_its_nine_thousand_six_hundred_baud() {
+    use brushwork_suprmotr_axis::SuprMotrAxis;
+    use brushwork_suprmotr_sim::{SuprMotr, SuprMotrConfig};
+    use brushwork_suprmotr_wire::Address;
+    use brushwork_tuning::tune::tune;
+    use brushwork_tuning_bench::suprmotr::line::BoardLine;
+
+    // The link of a plant whose line is as it leaves the factory.
+    let plant = specimen(SEED, 2);
+    assert_eq!(plant.unit.rate, 0);
+    for method in [Method::Pd, Method::Pid] {
+        let unit = SuprMotr::new(SuprMotrConfig::new(Address::FACTORY)).expect("the slide is sound");
+        let mut axis = SuprMotrAxis::new(BoardLine::of(unit, &plant));
+        let report = tune(&mut axis, &request_of(&plant, method));
+        println!(
+            "{method:?}: {:?} {:?} {:?} {:?} {:?}, {:?} s",
+            report.proposed.suprmotr,
+            report.causes,
+            report.fit,
+            report.request.law,
+            report.measured,
+            report.seconds
+        );
+        assert_ne!(report.verdict, Verdict::Refused, "{method:?}: {:?}", report.causes);
+    }
+}
