@@ -1,7 +1,7 @@
 //! What is done with the macros on a board, line by line: listed, stored and read back, called.
 //!
 //! A line ends a macro that runs, so the status is asked first, by its single character, and no line is sent while it tells of a macro or a wait.
-//! Who has the link sends what [`Transfer::next`] gives and hands the reply to [`Transfer::answered`].
+//! Who has the link sends what [`Transfer::bytes`] gives and hands the reply to [`Transfer::answered`].
 
 use brushwork_suprmotr_wire::{
     Command, EXECUTE, Line, Mnemonic, Progress, Radix, Report, Single, Status, operation, parse_report,
@@ -99,7 +99,7 @@ impl Transfer {
     }
 
     /// The bytes that are to be sent now; the same again until they are answered.
-    pub fn next(&mut self) -> &[u8] {
+    pub fn bytes(&mut self) -> &[u8] {
         let line = match &self.stage {
             Stage::Status | Stage::Nothing => String::new(),
             Stage::List | Stage::Back(_) => {
@@ -198,7 +198,7 @@ mod tests {
         let mut transfer = Transfer::new(job);
         let mut told = Vec::new();
         loop {
-            let bytes = transfer.next().to_vec();
+            let bytes = transfer.bytes().to_vec();
             assert_ne!(bytes, [EXECUTE], "a carriage return alone repeats the last line");
             let reply = bus.exchange(&bytes, Duration::from_secs(6));
             match transfer.answered(&reply) {
@@ -239,16 +239,16 @@ mod tests {
     #[test]
     fn a_macro_that_reads_back_otherwise_and_a_report_that_is_none_end_it() {
         let mut transfer = Transfer::new(Job::Store(lines()));
-        transfer.next();
+        transfer.bytes();
         assert_eq!(transfer.answered(b"0S:00 80 00 00 00 00\r\n\x03"), Step::GoesOn);
         assert_eq!(transfer.stored(), (0, 3));
-        transfer.next();
+        transfer.bytes();
         assert_eq!(transfer.answered(b""), Step::GoesOn);
-        transfer.next();
+        transfer.bytes();
         let other = transfer.answered(b"MD0, SO+0000000004\r\n\x03");
         assert_eq!(other, Step::Ended(Err(Trouble::NotStored(0))));
         let mut transfer = Transfer::new(Job::List);
-        transfer.next();
+        transfer.bytes();
         assert_eq!(transfer.answered(b"?"), Step::Ended(Err(Trouble::NoReport(Mnemonic::TS))));
     }
 }

@@ -49,9 +49,10 @@ fn lengths(command: &Command) -> (usize, usize) {
         && command.number.is_none();
     let up =
         if by_character { 1 } else { Line::of(*command).encode(Radix::Decimal).map_or(0, |line| line.len()) };
-    let told = match command.row().reports {
-        Reports::Number { .. } => ReportLine::Number { of: command.mnemonic, value: 0 },
-        _ => ReportLine::Status(Status::default()),
+    let told = if let Reports::Number { .. } = command.row().reports {
+        ReportLine::Number { of: command.mnemonic, value: 0 }
+    } else {
+        ReportLine::Status(Status::default())
     };
     let address = brushwork_suprmotr_wire::Address::FACTORY;
     let down = encode_report(ReportForm::Full, Radix::Decimal, address, &[told]).len();

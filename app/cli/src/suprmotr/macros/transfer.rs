@@ -118,7 +118,7 @@ impl<'a> Board<'a> {
     ) -> Result<Result<Done, Trouble>, Exit> {
         let mut transfer = Transfer::new(job);
         loop {
-            let reply = self.exchange(transfer.next().to_vec())?;
+            let reply = self.exchange(transfer.bytes().to_vec())?;
             match transfer.answered(&reply) {
                 Step::GoesOn => {}
                 Step::Stored(number) => stored(number)?,

@@ -119,7 +119,7 @@ impl Board {
         self.asked += 1;
         let id = FIRST_ID + self.asked;
         work.waiting = Some(id);
-        Some(Request::Raw { id, bytes: work.transfer.next().to_vec() })
+        Some(Request::Raw { id, bytes: work.transfer.bytes().to_vec() })
     }
 
     /// The link is busy: the same line is sent again.

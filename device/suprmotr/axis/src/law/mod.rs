@@ -5,9 +5,11 @@
 //! DD, which is a time in turns.
 
 mod profile;
+mod rate;
 mod registers;
 mod table;
 
+pub use rate::SuprMotrLaw;
 pub use registers::{
     DRIVE_STEPS, MovePace, SuprMotrHeld, SuprMotrNote, SuprMotrPart, SuprMotrProposal, SuprMotrRegisters,
     SuprMotrSetup, SuprMotrWrite,
@@ -21,12 +23,9 @@ use brushwork_tuning::law_probe::LawProbe;
 use brushwork_tuning::model::{Gains, Lag};
 use brushwork_tuning::setpoint::Setpoint;
 use profile::Profile;
-use serde::{Deserialize, Serialize};
 
 /// Turns in a second that the loop may have: from a slow one to that of an LM629 (341 us) and beyond.
 const RATES_HZ: [u32; 9] = [250, 354, 500, 707, 1_000, 1_414, 2_000, 2_828, 4_000];
-/// The one that is taken for granted before anything is known. Assumed.
-const USUAL_RATE_HZ: u32 = 1_000;
 
 /// One loop on the position. Assumed: what it computes it gives in the same turn; half a turn for the winding.
 static FACTS: Facts = Facts {
@@ -44,19 +43,6 @@ static FACTS: Facts = Facts {
     unmodelled_ticks: 0.5,
     integral_times: (30.0, 0.65),
 };
-
-/// The law.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct SuprMotrLaw {
-    /// Turns of the loop in a second.
-    pub rate_hz: u32,
-}
-
-impl Default for SuprMotrLaw {
-    fn default() -> Self {
-        Self { rate_hz: USUAL_RATE_HZ }
-    }
-}
 
 /// The state of the loop.
 #[derive(Clone, Copy, Debug, Default)]

@@ -1,6 +1,6 @@
 //! Gains as registers of a SuprMotr, and back.
 
-use super::SuprMotrLaw;
+use super::rate::SuprMotrLaw;
 use brushwork_tuning::axis::AxisError;
 use brushwork_tuning::joined::{LawPart, Part};
 use brushwork_tuning::model::{Gains, Pid};
