@@ -52,7 +52,7 @@ mod real_time {
             brushwork_tuning::axis::EncoderClass::Quadrature,
         );
         tune(
-            &mut Joined::first(Box::new(axis)),
+            &mut Joined::first(Box::new(Joined::first(Box::new(axis)))),
             &Request { guard: GuardOptions::default(), ..Request::default() },
         )
     }
