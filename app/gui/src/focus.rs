@@ -52,8 +52,6 @@ struct Focus {
     places: [Option<(Pos2, u64)>; Region::ALL.len()],
     /// Where the keyboard is to go, and since which frame.
     wanted: Option<(Region, u64)>,
-    /// Where it went last, and in which frame: a frame that is laid out twice has to take it there twice.
-    taken: Option<(Region, u64)>,
     /// The pointer was used last, and not the keyboard.
     by_pointer: bool,
 }
@@ -152,10 +150,7 @@ fn begin(ui: &Ui, region: Region) -> bool {
         let wanted = focus.wanted.filter(|(_, since)| now <= since + PATIENCE);
         let is_wanted = wanted.is_some_and(|(wanted, _)| wanted == region);
         focus.wanted = wanted.filter(|_| !is_wanted);
-        if is_wanted {
-            focus.taken = Some((region, now));
-        }
-        focus.taken == Some((region, now))
+        is_wanted
     })
 }
 

@@ -18,6 +18,8 @@ const LEFT_WIDTH: f32 = 412.0;
 const SIDE_BY_SIDE: f32 = 720.0;
 /// Height of the picture where it stands below.
 const PICTURE_HEIGHT: f32 = 300.0;
+/// Frames after which the tables of a result have their sizes.
+const SETTLED: u8 = 3;
 
 /// Fills what is left of `ui`.
 pub fn guide_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
@@ -52,14 +54,20 @@ pub fn guide_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 
 /// When a run has ended and its gains can be applied, the keyboard goes to what came of it; a hand at the pointer is not led about.
 fn go_to_result(ui: &Ui, front: &Connection, which: Loop) {
-    let id = Id::unique("a tuning run is shown");
-    let is_running = front.tune.is_running();
-    let has_run = is_running || ui.data(|data| data.get_temp(id)).unwrap_or(false);
-    // The gains of the level are worked out a moment after the run.
+    // How many frames what came of a run has been there; none while it goes on, and nothing where it has been gone to.
+    let id = Id::unique("what came of a tuning run is there");
+    let frames: Option<u8> = ui.data(|data| data.get_temp(id)).flatten();
     let is_shown = front.tune.front(which).run().is_none_or(|run| run.shown.is_some());
-    let is_over = has_run && !is_running && !front.is_guided() && !front.settings.is_busy() && is_shown;
-    ui.data_mut(|data| data.insert_temp(id, has_run && !is_over));
-    if is_over && focus::shows_ring(ui.ctx()) {
+    let is_there = !front.is_guided() && !front.settings.is_busy() && is_shown;
+    let frames = match (front.tune.is_running(), frames) {
+        (true, _) => Some(0),
+        (false, Some(frames)) if is_there => Some(frames + 1),
+        (false, frames) => frames,
+    };
+    // A frame that shows a table for the first time is laid out twice, between which the keyboard would get lost.
+    let is_settled = frames == Some(SETTLED);
+    ui.data_mut(|data| data.insert_temp(id, frames.filter(|_| !is_settled)));
+    if is_settled && focus::shows_ring(ui.ctx()) {
         focus::want(ui.ctx(), Region::Result);
     }
 }
