@@ -185,7 +185,6 @@ impl Fingers {
         }
         for _ in 0..60 {
             if self.focused().is_some_and(|label| label == name) {
-                println!("{name}: {} keys", self.keys);
                 return;
             }
             self.key(Key::Tab);
