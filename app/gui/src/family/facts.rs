@@ -330,6 +330,8 @@ pub enum Ability {
     Conflicts,
     /// Calibration by hand of loop gains.
     ByHand,
+    /// Motion by duty, and so a highest duty and current of a tuning run.
+    Duty,
     /// Several serial ports, each with a time-out.
     Streams,
     /// A supply of its own for the logic.

@@ -9,6 +9,7 @@ use super::files::files_ui;
 use super::winding::{unknown_ui, winding_ui};
 use super::{FIGURES, Figures, Loop, Run, TuneAction, figure_ui};
 use crate::command::{Command, Commands};
+use crate::family::Ability;
 use crate::model::{IndicatorState, Model, Sheet};
 use crate::theme::Palette;
 use crate::tune::messages::RunMessage;
@@ -51,7 +52,12 @@ pub fn result_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Com
 fn empty_ui(ui: &mut Ui, model: &Model, which: Loop) {
     let _palette = Palette::of(ui);
     let has_piv = model.front.family().methods(which).contains(&Method::Piv);
+    let has_duty = model.front.family().lacks(Ability::Duty).is_none();
     let text = match which {
+        Loop::Position if !has_duty => {
+            "Not tuned yet.\n\n1. Choose the method. PID holds against a load; PD is the simplest.\n2. If the axis has end stops, choose \
+             Within and give its travel.\n3. Arm this screen and press Tune."
+        }
         Loop::Position if !has_piv => {
             "Not tuned yet.\n\n1. Choose the method. PID holds against a load; PD is the simplest.\n2. If the axis has end stops, choose \
              Within and give its travel.\n3. Arm this screen and press Tune.\n\nThere is one set of registers: gains for positions are \

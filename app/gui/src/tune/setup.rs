@@ -29,6 +29,9 @@ const TRAVEL_WIDTH: f32 = 270.0;
 const WHAT_IT_DOES: &str = "Checks the wiring with little duty, measures the motor, designs gains for the level, and tries them. \
     Nothing stays in the controller until you apply it.";
 
+const WHAT_IT_DOES_BY_MOVES: &str = "Moves the axis to and fro under known gains, measures the loop, designs gains for the level, and tries them. \
+    Nothing stays in the controller until you apply it.";
+
 pub fn setup_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands) {
     let _palette = Palette::of(ui);
     let is_armed = model.front.link.arming.is_armed_for(which.scope());
@@ -54,8 +57,9 @@ pub fn setup_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Comm
         }
     }
     options_ui(ui, model, which);
+    let has_duty = model.front.family().lacks(Ability::Duty).is_none();
     let hint = if is_armed {
-        WHAT_IT_DOES
+        if has_duty { WHAT_IT_DOES } else { WHAT_IT_DOES_BY_MOVES }
     } else {
         "Arm this screen to tune. Looking at results and trying gains on the model needs no arming."
     };
@@ -119,6 +123,7 @@ fn options_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
     let family = model.front.family();
     let methods = family.methods(which);
     let has_encoders = family.lacks(Ability::AbsoluteEncoders).is_none();
+    let has_duty = family.lacks(Ability::Duty).is_none();
     let setting = &mut model.front.tune.panel_mut(which, motor).setting;
     let travel_width = if setting.turns_freely { 0.0 } else { TRAVEL_WIDTH };
     let encoder_width = if has_encoders { 0.0 } else { ENCODER_WIDTH };
@@ -134,11 +139,11 @@ fn options_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
         travel_ui(ui, setting, travel.filter(|_| which == Loop::Position));
         if is_wide {
             ui.separator();
-            limits_ui(ui, setting, has_encoders);
+            limits_ui(ui, setting, has_duty, has_encoders);
         }
     });
     if !is_wide {
-        ui.horizontal(|ui| limits_ui(ui, setting, has_encoders));
+        ui.horizontal(|ui| limits_ui(ui, setting, has_duty, has_encoders));
     }
     if which == Loop::Velocity {
         ui.horizontal(|ui| identification_ui(ui, setting));
@@ -199,7 +204,22 @@ fn methods_ui(ui: &mut Ui, setting: &mut Setting, methods: &[Method]) {
     ui.separator();
 }
 
-fn limits_ui(ui: &mut Ui, setting: &mut Setting, has_encoders: bool) {
+fn limits_ui(ui: &mut Ui, setting: &mut Setting, has_duty: bool, has_encoders: bool) {
+    if has_duty {
+        highest_ui(ui, setting);
+        ui.separator();
+    }
+    let tries = ui.checkbox(&mut setting.tries, "Try the gains");
+    tries.on_hover_text(
+        "Tries them on the machine at the end of the run and lowers them if it is rougher than predicted",
+    );
+    if has_encoders {
+        encoder_ui(ui, setting);
+    }
+}
+
+/// The highest duty and current of a run.
+fn highest_ui(ui: &mut Ui, setting: &mut Setting) {
     ui.label("Duty up to");
     let duty =
         Numeric { name: "Highest duty", unit: "%", range: 20.0..=100.0, decimals: 0, step: 5.0, width: 62.0 };
@@ -208,14 +228,6 @@ fn limits_ui(ui: &mut Ui, setting: &mut Setting, has_encoders: bool) {
     let amps = Numeric::new("Highest current", "A", 0.0..=200.0, (1, 0.5, 70.0));
     amps.ui(ui, &mut setting.max_amps)
         .on_hover_text("The run ends above it; 0 leaves it to the controller's own limit");
-    ui.separator();
-    let tries = ui.checkbox(&mut setting.tries, "Try the gains");
-    tries.on_hover_text(
-        "Tries them on the machine at the end of the run and lowers them if it is rougher than predicted",
-    );
-    if has_encoders {
-        encoder_ui(ui, setting);
-    }
 }
 
 fn travel_ui(ui: &mut Ui, setting: &mut Setting, held: Option<(f64, f64)>) {

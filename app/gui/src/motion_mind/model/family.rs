@@ -245,6 +245,7 @@ impl Family for MotionMind {
             }
             Ability::AbsoluteEncoders => "A Motion Mind 3 is tuned with its quadrature encoder.",
             Ability::ByHand => "Use the step assistant of the Position screen.",
+            Ability::Duty => return None,
         })
     }
 }

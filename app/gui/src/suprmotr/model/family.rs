@@ -7,6 +7,7 @@ use brushwork_suprmotr_client::channels::CHANNELS;
 use brushwork_suprmotr_client::{COMPUTED_TARGET, COMPUTED_VELOCITY, SUPRMOTR, SuprMotrFacts};
 use brushwork_suprmotr_macros::MACROS;
 use brushwork_suprmotr_wire::{Effect, Mnemonic, Radix};
+use brushwork_tuning::cause::Cause;
 use brushwork_tuning::tune::Method;
 use brushwork_values::Motor;
 
@@ -181,6 +182,23 @@ impl Family for SuprMotr {
         &[Channel::M1_POSITION, COMPUTED_TARGET, Channel::M1_POSITION_ERROR, COMPUTED_VELOCITY]
     }
 
+    #[allow(clippy::wildcard_enum_match_arm, reason = "the others have remedies that hold for all")]
+    fn remedies(&self, cause: Cause) -> Option<&'static [&'static str]> {
+        match cause {
+            Cause::TravelLimit => Some(&[
+                "Move the axis to the middle of its travel.",
+                "Widen the travel if the mechanics allow it.",
+                "Lower the velocity of its moves (DV), so that it needs less room to stop.",
+            ]),
+            Cause::ShaftLocked | Cause::Stalled => Some(&[
+                "Release brakes and take jams away; turn the shaft by hand.",
+                "If the axis stands at an end stop, move it to the middle and tune Within its travel.",
+                "If it is only heavy, raise DL, the most that the loop may give.",
+            ]),
+            _ => None,
+        }
+    }
+
     fn lacks(&self, ability: Ability) -> Option<&'static str> {
         Some(match ability {
             Ability::Scripts => "A SuprMotr runs macros of its own language, not scripts.",
@@ -199,6 +217,7 @@ impl Family for SuprMotr {
             Ability::LogicBattery => "A SuprMotr makes the supply of its logic out of that of the motor.",
             Ability::AbsoluteEncoders => "A SuprMotr has a quadrature encoder.",
             Ability::ByHand => "A SuprMotr takes no duty, by which gains could be calibrated by hand.",
+            Ability::Duty => "A SuprMotr takes no duty.",
         })
     }
 }
