@@ -267,7 +267,9 @@ fn the_level_and_gains_by_hand_redraw_the_prediction_and_send_nothing() {
     assert!(stiffer.level > 60.0, "{}", stiffer.level);
     let shown = stiffer.shown.expect("gains");
     assert_ne!(shown.registers, first.registers);
-    assert!(shown.forecast.load_dip < first.forecast.load_dip && shown.forecast.ms > first.forecast.ms);
+    // Stiffness is what the design weighs: the error under a load over time. Its peak alone may rise a little where the gains of D fall.
+    let figures = [&first.forecast, &shown.forecast].map(|of| (of.score.load, of.ms));
+    assert!(figures[1].0 < figures[0].0 && figures[1].1 > figures[0].1, "{figures:?}");
     assert!(bench.sees_part("Considered on the model only"));
     bench.enter("M1 proposed Position P", "4000");
     assert!(bench.sees_part("Unstable on the model"), "what would happen is told before it does");
