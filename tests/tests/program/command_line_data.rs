@@ -412,7 +412,10 @@ fn a_raw_number_whose_program_is_killed_before_it_is_read_back_is_named_by_the_n
     };
     let noted = || {
         let files = std::fs::read_dir(folder.path().join("raw")).ok()?;
-        let text = std::fs::read_to_string(files.flatten().next()?.path()).ok()?;
+        // Until it has its name it is not noted, and nothing has gone out.
+        let mut paths = files.flatten().map(|file| file.path());
+        let noted = paths.find(|path| path.extension().is_some_and(|extension| extension == "json"))?;
+        let text = std::fs::read_to_string(noted).ok()?;
         serde_json::from_str::<Value>(&text).ok()
     };
     let writing = brushwork(&["settings", "raw", "motor1.encoder.pin=2", "--own-risk"]);
