@@ -57,13 +57,12 @@ pub fn run(
     out: &mut Output,
     interrupt: &Interrupt,
 ) -> Result<Exit, Exit> {
-    let Some(together) = together(&mut command) else {
-        return each(Shared { command, typed }, typed, out, interrupt);
+    let together = together(&mut command);
+    let mut command = Shared { command, typed };
+    let (Some(together), Some(args)) = (together, command.connect_mut().map(|args| args.clone())) else {
+        return each(command, typed, out, interrupt);
     };
-    let Command::Status(args) = &command else { return Err(Exit::Failed) };
-    let units = units(&args.connect, interrupt)?;
-    let command = Shared { command, typed };
-    let mut several = Several { command, units, files: Vec::new(), is_json: true, objects: Vec::new() };
+    let mut several = Several::of(command, &args, true, interrupt)?;
     loop {
         several.objects.clear();
         let begun = Instant::now();
@@ -95,10 +94,8 @@ pub fn each(
     let Some(args) = command.connect_mut().filter(|args| args.is_several()).map(|args| args.clone()) else {
         return command.run(out, interrupt);
     };
-    let units = units(&args, interrupt)?;
-    let files = command.files_mut().into_iter().map(|file| file.clone()).collect();
     let is_json = asks_for_json(typed);
-    let mut several = Several { command, units, files, is_json, objects: Vec::new() };
+    let mut several = Several::of(command, &args, is_json, interrupt)?;
     let exit = several.run(out, interrupt);
     if is_json {
         out.json(&several.objects)?;
@@ -184,6 +181,12 @@ struct Several<C> {
 }
 
 impl<C: PerUnit> Several<C> {
+    fn of(mut command: C, args: &ConnectArgs, is_json: bool, interrupt: &Interrupt) -> Result<Self, Exit> {
+        let units = units(args, interrupt)?;
+        let files = command.files_mut().into_iter().map(|file| file.clone()).collect();
+        Ok(Self { command, units, files, is_json, objects: Vec::new() })
+    }
+
     fn run(&mut self, out: &mut Output, interrupt: &Interrupt) -> Result<Exit, Exit> {
         let Some(how) = self.command.how_mut() else { return self.round(out, interrupt) };
         how.several = true;
