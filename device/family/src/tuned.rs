@@ -14,6 +14,7 @@ use brushwork_tuning::law_probe::LawProbe;
 use brushwork_tuning::setup::{LoopAxis, Setup};
 use brushwork_values::Motor;
 use std::marker::PhantomData;
+use std::time::Duration;
 
 /// Whose axis a job tunes.
 #[derive(Clone, Copy, Debug)]
@@ -173,4 +174,20 @@ pub fn thrice<T>(mut call: impl FnMut() -> Result<T, AxisError>) -> Result<T, Ax
 #[must_use]
 pub fn failed(tried: LoopActMessage, place: &str, error: &AxisError) -> Failure {
     Failure::new(tried, place, Message::error(error.clone()), LoopRemedyMessage::CheckLink)
+}
+
+/// An exchange that took so much longer than the quickest of its kind had a retry in it, so that nobody can say when the unit did its work.
+const LATE: Duration = Duration::from_millis(35);
+
+/// The quickest exchange of a kind so far.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Quickest(Option<Duration>);
+
+impl Quickest {
+    /// Takes note of one, and tells whether it took as long as one with a retry.
+    pub fn is_vague(&mut self, took: Duration) -> bool {
+        let least = self.0.map_or(took, |quickest| quickest.min(took));
+        self.0 = Some(least);
+        took > least + LATE
+    }
 }

@@ -1,7 +1,9 @@
 //! The loop of a Motion Mind over the device thread.
 
 use brushwork_family::messages::LoopActMessage;
-use brushwork_family::tuned::{OtherTuned, Registers, Restored, Target, Tuned, failed, reported, thrice};
+use brushwork_family::tuned::{
+    OtherTuned, Quickest, Registers, Restored, Target, Tuned, failed, reported, thrice,
+};
 use brushwork_link::Failure;
 use brushwork_link::device::JobContext;
 use brushwork_motion_mind_axis::law::{MotionMindLaw, MotionMindPart};
@@ -19,28 +21,17 @@ use std::time::Duration;
 const TRIED: [&str; 9] =
     ["velocityff", "pterm", "iterm", "dterm", "pidscalar", "vnlimit", "vplimit", "deadband", "ampslimit"];
 
-/// An exchange that took so much longer than the quickest of its kind had a retry in it, so that nobody can say when the unit did
-/// its work.
-const LATE: Duration = Duration::from_millis(35);
-
 /// The wire of a job as the tuner's carrier. The device thread knows which protocol the unit speaks; here all is commands.
 struct MindJobCarrier<'a, 'b> {
     context: &'a mut JobContext<'b>,
-    /// The quickest reading and the quickest of the other exchanges so far.
-    quickest: [Option<Duration>; 2],
+    /// Of the readings, and of the other exchanges.
+    quickest: [Quickest; 2],
 }
 
 impl<'a, 'b> MindJobCarrier<'a, 'b> {
     /// The carrier of a job.
     fn new(context: &'a mut JobContext<'b>) -> Self {
-        Self { context, quickest: [None; 2] }
-    }
-
-    fn is_vague(&mut self, is_reading: bool, took: Duration) -> bool {
-        let quickest = &mut self.quickest[usize::from(is_reading)];
-        let least = quickest.map_or(took, |quickest| quickest.min(took));
-        *quickest = Some(least);
-        took > least + LATE
+        Self { context, quickest: [Quickest::default(); 2] }
     }
 
     /// When a command did its work, from when it was sent and its reply complete.
@@ -86,7 +77,7 @@ impl MindCarrier for MindJobCarrier<'_, '_> {
             Command::ReadText(Part::All) => u32::MAX,
             command => command.named_registers(),
         };
-        let is_vague = self.is_vague(mask != 0, span.1.saturating_sub(span.0));
+        let is_vague = self.quickest[usize::from(mask != 0)].is_vague(span.1.saturating_sub(span.0));
         let answer = if mask == 0 {
             Reply::Acknowledged
         } else {

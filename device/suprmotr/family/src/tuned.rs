@@ -1,7 +1,9 @@
 //! The loop of a SuprMotr over the device thread.
 
 use brushwork_family::messages::LoopActMessage;
-use brushwork_family::tuned::{OtherTuned, Registers, Restored, Target, Tuned, failed, reported, thrice};
+use brushwork_family::tuned::{
+    OtherTuned, Quickest, Registers, Restored, Target, Tuned, failed, reported, thrice,
+};
 use brushwork_link::Failure;
 use brushwork_link::device::JobContext;
 use brushwork_suprmotr_axis::law::{SuprMotrLaw, SuprMotrPart, SuprMotrSetup};
@@ -19,26 +21,16 @@ use std::time::Duration;
 const TRIED: [&str; 6] =
     ["loop.p", "loop.i", "loop.d", "loop.integral_limit", "motion.velocity", "motion.acceleration"];
 
-/// An exchange that took so much longer than the quickest of its kind had a retry in it, so that nobody can say when the unit did its work.
-const LATE: Duration = Duration::from_millis(35);
-
 /// The wire of a job as the tuner's carrier.
 struct JobCarrier<'a, 'b> {
     context: &'a mut JobContext<'b>,
-    /// The quickest reading of a position so far.
-    quickest: Option<Duration>,
+    /// Of the readings of a position.
+    quickest: Quickest,
 }
 
 impl<'a, 'b> JobCarrier<'a, 'b> {
     fn new(context: &'a mut JobContext<'b>) -> Self {
-        Self { context, quickest: None }
-    }
-
-    /// Whether a reading of a position took as long as one with a retry.
-    fn is_vague(&mut self, took: Duration) -> bool {
-        let least = self.quickest.map_or(took, |quickest| quickest.min(took));
-        self.quickest = Some(least);
-        took > least + LATE
+        Self { context, quickest: Quickest::default() }
     }
 }
 
@@ -80,7 +72,7 @@ impl SuprMotrCarrier for JobCarrier<'_, '_> {
             .map_err(|error| reported(&error))?;
         let span = (reply.span.requested_at, reply.span.replied_at);
         let answer = answer_of(&command, &reply.values).ok_or(AxisError::NoReply)?;
-        if command.mnemonic == Mnemonic::TP && self.is_vague(span.1.saturating_sub(span.0)) {
+        if command.mnemonic == Mnemonic::TP && self.quickest.is_vague(span.1.saturating_sub(span.0)) {
             return Err(AxisError::Late);
         }
         let at = match self.context.byte_time() {
