@@ -149,11 +149,8 @@ causes! {
     /// The gains of the controller have steps that are too large.
     GainSteps "The gains of this controller are whole numbers, and one step of them is more than the margin of this loop allows: the smallest \
         that moves the motor is too much, or none between them is right. A coarser encoder, or a gear behind it, makes the steps smaller.";
-    /// The gains of the controller end before the loop is as stiff as it could be.
-    GainEnd "The largest gain that the controller can hold was reached: the loop is softer than the motor would allow. A finer encoder makes \
-        the same gain stiffer.";
     /// The loop of the controller was left switched off at the end of a run that found something wrong with the machine.
-    LoopOff "The controller's loop was left switched off (in RAM: DISABLEPID in FUNCTION, or MF), since with this it could drive the motor \
+    LoopOff "The controller's loop was left switched off (DISABLEPID in FUNCTION, or MF, in RAM), since with this it could drive the motor \
         away. When the fault is remedied, arm or drive again: that switches the loop on where the motor stands.";
     /// A step or a relay was asked for where there is none.
     OnlyFree "Step and relay are for the velocity loop of a motor that may turn freely. Choose the method fit.";

@@ -226,7 +226,6 @@ fn follow<L: Law>(
     let Some((start_s, start)) = stretch.points.first().copied() else { return };
     let tick_s = law.tick_s();
     let mut twin = TickLoop::new(*model, *law, lag, *gains, OF_DUTY).smooth();
-    twin.motion.position = start;
     // Friction may hold it a little beside what it was told: the loop pulls there from the first tick on.
     let mut moves = stretch.moves.iter().peekable();
     let at_first = moves.next().map_or(start, |before| before.1);
