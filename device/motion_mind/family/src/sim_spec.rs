@@ -14,6 +14,9 @@ pub use brushwork_family::spec::preset;
 /// The name of the model.
 pub const MODEL: &str = "motion-mind-3";
 
+/// The motor of mode 5: one whose potentiometer is the feedback that the mode is made for.
+const ABSOLUTE: &str = "linear-actuator";
+
 /// One line with one or more simulated Motion Minds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotionMindSpec {
@@ -31,7 +34,7 @@ pub struct MotionMindSpec {
     pub revision: u8,
     /// Registers that its firmware does not have, by their bits.
     pub lacks: u32,
-    /// The motor; that of the first preset if none is named.
+    /// The motor; if none is named that of the first preset, or in mode 5 one with a potentiometer.
     pub preset: Option<String>,
     /// Seed of the measurement noise; 0 for none.
     pub seed: u64,
@@ -137,7 +140,9 @@ impl MotionMindSpec {
             ..MotionMindConfig::new(self.mode)
         };
         config.seed = if self.seed == 0 { 0 } else { self.seed.wrapping_add(address.get().into()).max(1) };
-        if let Some(preset) = self.preset.as_deref().and_then(presets::lookup) {
+        // Mode 5 closes its loop over a voltage, which the encoder of the other modes does not give.
+        let of_mode = (self.mode == Mode::AnalogPid).then_some(ABSOLUTE);
+        if let Some(preset) = self.preset.as_deref().or(of_mode).and_then(presets::lookup) {
             config.world = presets::world_of(preset, preset, pin::COUNT);
         }
         config

@@ -2,7 +2,7 @@
 
 use brushwork_motion_mind_wire::{Address, Mode, Protocol};
 use brushwork_plant::presets;
-use brushwork_plant::world::{BoardSwitches, PinSignal, World, WorldAction, WorldParams};
+use brushwork_plant::world::{BoardSwitches, PinSignal, PinState, World, WorldAction, WorldParams};
 use brushwork_plant::{EncoderKind, ParamsError};
 use brushwork_values::Motor;
 
@@ -93,10 +93,7 @@ impl MotionMindConfig {
                 (pin::NEGATIVE_LIMIT, volts(0.0)),
             ],
             Mode::Buttons => vec![(pin::ANALOG_CONTROL, volts(5.0)), (pin::ANALOG_FEEDBACK, volts(0.5))],
-            Mode::AnalogPid => vec![
-                (pin::ANALOG_CONTROL, volts(0.0)),
-                (pin::ANALOG_FEEDBACK, PinSignal::Encoder { motor: Motor::M1 }),
-            ],
+            Mode::AnalogPid => vec![(pin::ANALOG_FEEDBACK, PinSignal::Encoder { motor: Motor::M1 })],
             Mode::Serial | Mode::SerialPid | Mode::FactoryRestore | Mode::FactoryTest => Vec::new(),
         };
     }
@@ -132,6 +129,14 @@ impl MotionMindConfig {
         let pulses = (self.mode == Mode::SerialPid && is_pulse_encoder).then_some((pin::INDEX_RC, encoder));
         for (pin, signal) in pulses.iter().chain(&self.signals) {
             world.apply(&WorldAction::SetPin { pin: *pin, signal: *signal });
+        }
+        // A stick that asks for where the potentiometer of mode 5 stands already.
+        let is_asked = self.signals.iter().any(|(pin, _)| *pin == pin::ANALOG_CONTROL);
+        if let (Mode::AnalogPid, false, PinState::Volts(volts)) =
+            (self.mode, is_asked, world.pin(pin::ANALOG_FEEDBACK))
+        {
+            world
+                .apply(&WorldAction::SetPin { pin: pin::ANALOG_CONTROL, signal: PinSignal::Volts { volts } });
         }
         Ok(world)
     }

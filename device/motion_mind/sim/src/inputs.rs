@@ -53,6 +53,8 @@ pub struct Inputs {
     good_pulses: VecDeque<i64>,
     /// Loops since the last R/C pulse was taken or missed.
     pulse_age: Option<u32>,
+    /// Whether the pins were read since power-up.
+    has_read: bool,
 }
 
 impl Debounced {
@@ -72,7 +74,10 @@ impl Debounced {
 impl Inputs {
     /// Reads all pins, once a loop of 5 ms.
     pub fn read(&mut self, world: &mut World, store: &Store, mode: Mode) {
-        let debounce = store.get(number::TIMER).max(1);
+        // Assumed: there is nothing to debounce at power-up. A unit that took ANA_MODE for open until TIMER is over would give half of its
+        // drive to a stick at rest.
+        let debounce = if self.has_read { store.get(number::TIMER).max(1) } else { 1 };
+        self.has_read = true;
         self.control = analog(world.pin(pin::ANALOG_CONTROL));
         self.feedback = analog(world.pin(pin::ANALOG_FEEDBACK));
         self.positive.take(is_low(world.pin(pin::POSITIVE_LIMIT)), debounce);

@@ -33,6 +33,18 @@ pub struct Loop {
     is_saturated: bool,
 }
 
+/// The end of a way from `now` to `target`: a virtual limit that lies before it stops it there (Motion Mind manual, registers 23 and 24: "if
+/// the VPLIMIT is set for +10000, and the controller is directed to move to +20000, it will be forced to stop at +10000"). Assumed: what
+/// stands beyond a limit already may come back and goes no further out, and a move at a velocity, which has no end, loses its drive at the
+/// limit.
+fn within_virtual_limits(store: &Store, target: i64, now: i64) -> i64 {
+    if !store.has(function::VIRTLIMIT) {
+        return target;
+    }
+    let (lowest, highest) = (store.get(number::VNLIMIT).min(now), store.get(number::VPLIMIT).max(now));
+    target.max(lowest).min(highest)
+}
+
 /// What one turn of the loop gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Turn {
@@ -114,15 +126,16 @@ impl Loop {
                 self.setpoint += velocity;
                 (velocity, false)
             }
-            Goal::Position(target) if store.has(function::VELLIMIT) => {
+            Goal::Position(target) => {
+                let end = within_virtual_limits(store, target, self.setpoint);
+                if !store.has(function::VELLIMIT) {
+                    self.setpoint = end;
+                    return (0, false);
+                }
                 let limit = store.get(number::VELOCITYLIMIT).max(0);
-                let step = (target - self.setpoint).clamp(-limit, limit);
+                let step = (end - self.setpoint).clamp(-limit, limit);
                 self.setpoint += step;
                 (step, false)
-            }
-            Goal::Position(target) => {
-                self.setpoint = target;
-                (0, false)
             }
         }
     }

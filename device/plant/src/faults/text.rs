@@ -27,6 +27,7 @@ In the machine (motor=1 or motor=2, else motor 1; unit=N for the Nth unit of a b
   plant:power-loss          plant:pin-volts=VOLTS,pin=N     plant:driver-fault
   plant:short-circuit       plant:boot-fault          plant:can-fault
   plant:detect-battery      (the buttons on the board; cells are counted from the next start on)
+  plant:pin-pulse=MICROSECONDS,pin=N                  (as a radio receiver sends them; 0 is none)
   plant:limit-switch=forward|backward|home,pin=N      (wires the switch to that pin)
 
 Without FROM a fault is there from the start, without TO it stays. Times: 2s, 2.5s, 500ms, 100us, 1min.";
@@ -148,7 +149,7 @@ impl<'a> Parts<'a> {
         let may_have = match name {
             "delay" => "dir and share",
             "unplug" => "unit",
-            "plant:pin-volts" => "pin and unit",
+            "plant:pin-volts" | "plant:pin-pulse" => "pin and unit",
             "plant:limit-switch" => "motor and pin and unit",
             _ if name.starts_with("plant:") => "motor and unit",
             _ => "dir",
@@ -234,6 +235,11 @@ impl<'a> Parts<'a> {
                 let volts = number("plant:pin-volts=2.5,pin=1")?;
                 let pin = self.need_pin("pin=1")?;
                 Ok(WorldAction::SetPin { pin, signal: PinSignal::Volts { volts } })
+            }
+            "pin-pulse" => {
+                let microseconds = number("plant:pin-pulse=1500,pin=1")?;
+                let pin = self.need_pin("pin=1")?;
+                Ok(WorldAction::SetPin { pin, signal: PinSignal::Pulse { microseconds } })
             }
             _ => Err(self.unknown()),
         }
@@ -437,13 +443,14 @@ mod tests {
                 .replace("=COUNTS", "=4")
                 .replace("=NM", "=-0.5")
                 .replace("=VOLTS", "=9")
+                .replace("=MICROSECONDS", "=1500")
                 .replace("=OHMS", "=1")
                 .replace("=CELSIUS", "=101")
                 .replace("pin=N", "pin=1");
             fault(&text);
             count += 1;
         }
-        assert_eq!(count, 23);
+        assert_eq!(count, 24);
         for line in FAULT_SYNTAX.lines().filter(|line| line.starts_with("  ") && line.contains(": ")) {
             let (_, examples) = line.split_once(": ").expect("it was just found");
             for example in examples.split(", ") {

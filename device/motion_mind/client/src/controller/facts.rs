@@ -2,7 +2,7 @@
 
 use super::channels::CHANNELS;
 use super::driving::{objection, preview};
-use super::indicators::INDICATORS;
+use super::indicators;
 use super::traffic::describe_sent;
 use brushwork_link::Message;
 use brushwork_link::device::{
@@ -61,7 +61,7 @@ impl UnitFacts for MotionMindFacts {
     }
 
     fn status_row(&self, report: Option<&StatusReport>, _homed: Option<[bool; 2]>) -> Vec<StatusPlace> {
-        status_row(report, INDICATORS)
+        status_row(report, indicators::in_mode(Some(self.mode)))
     }
 
     fn describe_sent(&self, bytes: &[u8]) -> Described {

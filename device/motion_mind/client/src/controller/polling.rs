@@ -3,7 +3,7 @@
 use crate::controller::channels::{ANALOG_CONTROL, ANALOG_FEEDBACK, INDEX_POSITION, RC_PULSE};
 use crate::controller::driving::COUNTS_PER_S_PER_STEP;
 use crate::controller::facts::MotionMindFacts;
-use crate::controller::indicators::INDICATORS;
+use crate::controller::indicators;
 use crate::controller::registers::{mask, value_in};
 use crate::controller::speaker::Speaker;
 use brushwork_link::device::StatusReport;
@@ -62,7 +62,7 @@ pub fn read(
         speaker.note_write(number::FUNCTION, function);
     }
     enter(&reply, facts, span, sample);
-    Ok(status_of(speaker, &reply, span))
+    Ok(status_of(speaker, facts, &reply, span))
 }
 
 /// Enters what the registers of a reply say.
@@ -90,13 +90,18 @@ fn enter(reply: &Reply, facts: Option<MotionMindFacts>, span: Span, sample: &mut
     }
 }
 
-fn status_of(speaker: &Speaker, reply: &Reply, span: Span) -> Option<StatusReport> {
+fn status_of(
+    speaker: &Speaker,
+    facts: Option<MotionMindFacts>,
+    reply: &Reply,
+    span: Span,
+) -> Option<StatusReport> {
     let word = u32::try_from(value_in(reply, number::STATUS)?).ok()?;
     Some(StatusReport {
         address: speaker.address.get(),
         at: span.replied_at,
         word,
-        indicators: INDICATORS,
+        indicators: indicators::in_mode(facts.map(|facts| facts.mode)),
         running_ticks: value_in(reply, number::TIME).and_then(|ticks| u32::try_from(ticks).ok()),
     })
 }

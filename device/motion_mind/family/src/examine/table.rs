@@ -92,6 +92,8 @@ pub static ASSUMED: &[Assumed] = &[
     Assumed::not("sim/src/assumed.rs", "How long it takes to be ready after power-up.", POWER),
     Assumed::not("sim/src/assumed.rs", "How often an R/C receiver sends a pulse.", RECEIVER),
     Assumed::not("sim/src/drive.rs", "How quickly the current limit takes the drive back.", LOAD),
+    Assumed::not("sim/src/inputs.rs", "That inputs are not debounced at power-up.", POWER),
+    Assumed::not("sim/src/loops.rs", "What holds a motor that stands beyond a virtual limit.", LOAD),
     Assumed::asked("sim/src/unit.rs", &["read_only"]),
     Assumed::not("sim/src/unit.rs", "That the loop holds the position that it finds at power-up.", POWER),
     Assumed::not("sim/src/unit.rs", "That a command is taken that the mode has no use for.", SWITCHES),
