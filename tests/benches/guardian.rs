@@ -1,8 +1,9 @@
 //! How soon a motor is off after the program that drives it was killed, or lost its display: seen in the simulator, whose controllers have no
 //! time-out of their own, or one of a minute.
 //!
-//! `cargo bench -p brushwork-tests --bench guardian -- [--kills 100] [--displays 20] [--load quiet|busy] [--program drive|tune|window]`. The table
-//! in SAFETY.md is what it prints. Of the worst it says when the motor was last seen driven, too: far from the first look at which it was off, this
+//! `cargo bench -p brushwork-tests --bench guardian -- [--kills 100] [--displays 20] [--load quiet|busy] [--program drive|tune|window]
+//! [--minutes 30]`. The table in SAFETY.md is what it prints. With `--minutes` it is a soak: one attack of each kind after the other, until the
+//! time is over. Of the worst it says when the motor was last seen driven, too: far from the first look at which it was off, this
 //! computer was late, not the stop. It ends with 1 where a motor was off later than promised, or a row could not be tried.
 #![expect(clippy::print_stdout, reason = "the table is what the benchmark is for")]
 
@@ -18,7 +19,7 @@ fn main() -> std::process::ExitCode {
 mod killing {
     use std::process::{Command, ExitCode, Stdio};
     use std::thread;
-    use std::time::Duration;
+    use std::time::{Duration, Instant};
 
     use brushwork_motion_mind_sim::{Mode, MotionMind, MotionMindBus, MotionMindConfig};
     use brushwork_plant::machine::Machine;
@@ -47,12 +48,14 @@ mod killing {
         displays: u32,
         load: Option<String>,
         program: Option<String>,
+        /// Attacks of all kinds in turn for so long, instead of a count of each.
+        soak: Option<Duration>,
     }
 
     impl Wanted {
         /// Of the command line, without what cargo adds.
         fn read() -> Result<Self, String> {
-            let mut wanted = Self { kills: 100, displays: 20, load: None, program: None };
+            let mut wanted = Self { kills: 100, displays: 20, load: None, program: None, soak: None };
             let mut words = std::env::args().skip(1).filter(|word| word != "--bench");
             while let Some(word) = words.next() {
                 let value = words.next().ok_or_else(|| format!("{word} has no value."))?;
@@ -62,6 +65,7 @@ mod killing {
                     "--displays" => wanted.displays = count()?,
                     "--load" => wanted.load = Some(value),
                     "--program" => wanted.program = Some(value),
+                    "--minutes" => wanted.soak = Some(Duration::from_secs(60) * count()?),
                     _ => return Err(format!("There is no option {word}.")),
                 }
             }
@@ -112,45 +116,46 @@ mod killing {
             "| Attack | Program | Controller | Load | Tried | Motor off in: median | p99 | worst | Goal |"
         );
         println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- |");
-        let mut is_kept = true;
+        let wants_window = wanted.program.as_ref().is_none_or(|only| only == Attack::Window.program());
+        let mut is_kept = has_xvfb || !wants_window;
+        if !is_kept {
+            println!("Xvfb is not installed, so that the window was not tried: on Debian, apt install xvfb.");
+        }
         for (load, goal_ms) in [("quiet", 100), ("busy", 300)] {
             if wanted.load.as_ref().is_some_and(|only| only != load) {
                 continue;
             }
             let busy: Vec<Child> = (0..if load == "busy" { BUSY } else { 0 }).map(|_| keep_busy()).collect();
-            for attack in Attack::ALL {
-                if wanted.program.as_ref().is_some_and(|only| only != attack.program()) {
-                    continue;
-                }
-                if attack.wants_display() && !has_xvfb {
-                    println!(
-                        "Xvfb is not installed, so that the window was not tried: on Debian, apt install xvfb."
-                    );
-                    is_kept = false;
-                    continue;
-                }
-                let times = if attack == Attack::Display { wanted.displays } else { wanted.kills };
-                let on_mcp = (0..times).map(|turn| once(&Served::on_pty(mcp(), ",stream=usb"), attack, turn));
-                is_kept &= row(attack, "MCP266", load, goal_ms, on_mcp.collect());
-                let mind = ",family=motion-mind";
-                let on_mind = (0..times).map(|turn| match attack {
-                    Attack::Tune => once(&Served::on_pty(tunable(), mind), attack, turn),
-                    Attack::Drive | Attack::Window | Attack::Display => {
-                        once(&Served::on_pty(motion_mind(), mind), attack, turn)
+            let attacks = Attack::ALL.into_iter().filter(|attack| {
+                wanted.program.as_ref().is_none_or(|only| only == attack.program())
+                    && (has_xvfb || !attack.wants_display())
+            });
+            let mut rows: Vec<Row> =
+                attacks.flat_map(|attack| UNITS.map(|unit| Row { attack, unit, took: Vec::new() })).collect();
+            let began = Instant::now();
+            for turn in 0.. {
+                let is_due = |row: &Row| match wanted.soak {
+                    Some(soak) => began.elapsed() < soak,
+                    None if row.attack == Attack::Display => turn < wanted.displays,
+                    None => turn < wanted.kills,
+                };
+                let mut tried = false;
+                for row in &mut rows {
+                    if is_due(row) {
+                        row.took.push(row.unit.attacked(row.attack, turn));
+                        tried = true;
                     }
-                });
-                is_kept &= row(attack, "Motion Mind 3", load, goal_ms, on_mind.collect());
+                }
+                if !tried {
+                    break;
+                }
+            }
+            for row in rows {
+                is_kept &= row.print(load, goal_ms);
             }
             drop(busy);
         }
         ExitCode::from(u8::from(!is_kept))
-    }
-
-    /// A Motion Mind whose loop can be tuned.
-    fn tunable() -> MotionMindBus {
-        let unit =
-            MotionMind::new(MotionMindConfig::new(Mode::SerialPid)).expect("the default motor is sound");
-        MotionMindBus::new(vec![unit])
     }
 
     fn keep_busy() -> Child {
@@ -159,27 +164,75 @@ mod killing {
         Child::spawn(&command, [Stdio::null(), Stdio::null(), Stdio::null()])
     }
 
-    /// Prints a row. Whether all of it is within the goal.
-    fn row(attack: Attack, unit: &str, load: &str, goal_ms: u64, took: Vec<Option<Off>>) -> bool {
-        let never = Off { off_after: NEVER, driven_for: NEVER };
-        let mut took: Vec<Off> = took.into_iter().map(|took| took.unwrap_or(never)).collect();
-        took.sort_unstable();
-        let Some(last) = took.len().checked_sub(1) else { return true };
-        let at = |share: usize| took[(last * share).div_ceil(100)].off_after.as_secs_f64() * 1e3;
-        let worst = took[last];
-        let is_kept = worst.off_after <= Duration::from_millis(goal_ms);
-        println!(
-            "| {} | {} | {unit} | {load} | {} | {:.0} ms | {:.0} ms | {:.0} ms (driven at {:.0}) | {goal_ms} ms{} |",
-            attack.title(),
-            attack.program(),
-            took.len(),
-            at(50),
-            at(99),
-            at(100),
-            worst.driven_for.as_secs_f64() * 1e3,
-            if is_kept { "" } else { ", MISSED" }
-        );
-        is_kept
+    /// Whose motor is driven.
+    #[derive(Clone, Copy)]
+    enum Unit {
+        Mcp,
+        MotionMind,
+    }
+
+    const UNITS: [Unit; 2] = [Unit::Mcp, Unit::MotionMind];
+
+    impl Unit {
+        fn name(self) -> &'static str {
+            match self {
+                Self::Mcp => "MCP266",
+                Self::MotionMind => "Motion Mind 3",
+            }
+        }
+
+        /// One attack on a new one. Nothing where its motor was not stopped.
+        fn attacked(self, attack: Attack, turn: u32) -> Option<Off> {
+            match (self, attack) {
+                (Self::Mcp, _) => once(&Served::on_pty(mcp(), ",stream=usb"), attack, turn),
+                (Self::MotionMind, Attack::Tune) => once(&Served::on_pty(tunable(), OF_MIND), attack, turn),
+                (Self::MotionMind, Attack::Drive | Attack::Window | Attack::Display) => {
+                    once(&Served::on_pty(motion_mind(), OF_MIND), attack, turn)
+                }
+            }
+        }
+    }
+
+    const OF_MIND: &str = ",family=motion-mind";
+
+    /// A Motion Mind whose loop can be tuned.
+    fn tunable() -> MotionMindBus {
+        let unit =
+            MotionMind::new(MotionMindConfig::new(Mode::SerialPid)).expect("the default motor is sound");
+        MotionMindBus::new(vec![unit])
+    }
+
+    /// A row of the table.
+    struct Row {
+        attack: Attack,
+        unit: Unit,
+        took: Vec<Option<Off>>,
+    }
+
+    impl Row {
+        /// Prints it. Whether all of it is within the goal.
+        fn print(self, load: &str, goal_ms: u64) -> bool {
+            let never = Off { off_after: NEVER, driven_for: NEVER };
+            let mut took: Vec<Off> = self.took.into_iter().map(|took| took.unwrap_or(never)).collect();
+            took.sort_unstable();
+            let Some(last) = took.len().checked_sub(1) else { return true };
+            let at = |share: usize| took[(last * share).div_ceil(100)].off_after.as_secs_f64() * 1e3;
+            let worst = took[last];
+            let is_kept = worst.off_after <= Duration::from_millis(goal_ms);
+            println!(
+                "| {} | {} | {} | {load} | {} | {:.0} ms | {:.0} ms | {:.0} ms (driven at {:.0}) | {goal_ms} ms{} |",
+                self.attack.title(),
+                self.attack.program(),
+                self.unit.name(),
+                took.len(),
+                at(50),
+                at(99),
+                at(100),
+                worst.driven_for.as_secs_f64() * 1e3,
+                if is_kept { "" } else { ", MISSED" }
+            );
+            is_kept
+        }
     }
 
     /// One attack, at a moment that depends on its turn.
