@@ -247,6 +247,7 @@ messages! {
         KeepsNone { title: String } "{title} keeps no macros of this kind.",
         MacroRuns "A macro is running or waiting, and a line would end it: nothing was sent. `brushwork stop` ends it.",
         NotStored { name: String, number: u8 } "{name} was sent as macro {number} and does not read back as it was sent: the controller did not store it.",
+        NoReportOfLine "No answer that makes sense came from the controller. Check the line and try again.",
         NoReport { command: String } "No answer that makes sense came to {command}. Check the line and try again.",
         TooManySteps { took_s: String, steps: usize } "Still running after {took_s} s and {steps} commands, of which no more are printed.",
     }

@@ -384,9 +384,11 @@ messages! {
         AtSupply { pin: String } "{pin} is at its high end now, as a contact is that is closed to 5 V.",
         Reads { pin: String, reading: f64 } "{pin} reads {reading:.0} now.",
         Pulses { pin: String, microseconds: f64 } "{pin} sees pulses of {microseconds:.0} µs now.",
-        AtOnce { pin: String, end: &'static str, what: Message } "{pin} stands at its {end} now: as soon as this is written, {what}.",
-        Later { pin: String, end: &'static str, what: Message } "Once {pin} is at its {end}, {what}.",
-        Unseen { pin: String, end: &'static str, what: Message } "Where {pin} will stand is not known before its type is written. If that is at its {end}, {what} at once.",
+        LowEnd "low end",
+        HighEnd "high end",
+        AtOnce { pin: String, end: Message, what: Message } "{pin} stands at its {end} now: as soon as this is written, {what}.",
+        Later { pin: String, end: Message, what: Message } "Once {pin} is at its {end}, {what}.",
+        Unseen { pin: String, end: Message, what: Message } "Where {pin} will stand is not known before its type is written. If that is at its {end}, {what} at once.",
         Stops { which: Message } "{which} stops and stays at rest while it is there",
         Coasts { which: Message } "{which} runs free while it is there",
         TurnsRound { which: Message } "the direction of {which} is turned round",
@@ -520,6 +522,7 @@ messages! {
         Open { name: String } "Open {name}",
         Close { title: String } "Close {title}",
         GoTo { place: String } "Go to {place}",
+        GoToSettings "Go to Settings",
     }
 }
 
@@ -549,7 +552,10 @@ messages! {
     pub enum MotorFieldMessage {
         Duty { motor: Motor } "{motor} duty",
         Encoder { motor: Motor } "{motor} encoder",
-        Jog { motor: String, direction: &'static str } "{motor} jog {direction}",
+        JogBackward { motor: Motor } "{motor} jog backward",
+        JogForward { motor: Motor } "{motor} jog forward",
+        JogOnlyBackward "Motor jog backward",
+        JogOnlyForward "Motor jog forward",
         Position { motor: Motor } "{motor} position",
         Speed { motor: Motor } "{motor} speed",
     }

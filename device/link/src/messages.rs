@@ -187,6 +187,7 @@ messages! {
         ReadSettingsBack "read the settings back",
         ReadItem { name: &'static str } "read: {name}",
         Write { what: String } "write {what}",
+        KeepBackupOfCommand "keep a backup before the command",
         KeepBackup { act: &'static str } "keep a backup before the {act}",
         Select { place: String } "select the unit {place}",
         Arm { scope: ArmScope } "arm {scope}",

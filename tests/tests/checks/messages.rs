@@ -1,7 +1,7 @@
 //! Keeps what is said to people in tables: each message known by one key, each sentence written once.
 
 use brushwork_tests::workspace;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// One member of a `messages!` table.
 struct Said {
@@ -144,6 +144,51 @@ fn what_is_said_is_no_bare_text() {
     }
     assert!(said > 150, "{said}: what says something is not found any more");
     assert_eq!(bare, Vec::<String>::new());
+}
+
+/// A value that is a word of a sentence cannot be translated with it: each such sentence is a message of its own.
+#[test]
+fn no_message_is_given_a_word_as_its_value() {
+    let keys: BTreeSet<String> = said().into_iter().map(|one| one.key.replace('.', "::")).collect();
+    let mut given = Vec::new();
+    let mut made = 0;
+    let is_shipped = |path: &String| path.contains("/src/") && !path.contains("/tests/");
+    for path in workspace::rust_files().into_iter().filter(is_shipped) {
+        let source = workspace::read(&path);
+        let shipped = source.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
+        for (at, _) in shipped.match_indices(" {") {
+            let is_name = |letter: char| letter.is_alphanumeric() || letter == ':';
+            let before = &shipped[..at];
+            let name = &before[before.trim_end_matches(is_name).len()..];
+            if !keys.contains(name) {
+                continue;
+            }
+            made += 1;
+            let values = braced(&shipped[at + 2..]);
+            let words = values.split('"').skip(1).step_by(2).filter(|text| is_word(text));
+            given.extend(words.map(|word| format!("{path}: {name} is given \"{word}\"")));
+        }
+    }
+    assert!(made > 500, "{made}: where messages are made is not found any more");
+    assert_eq!(given, Vec::<String>::new());
+}
+
+/// What stands before the brace that closes.
+fn braced(text: &str) -> &str {
+    let mut depth = 1;
+    let end = text.find(|letter| {
+        depth += i32::from(letter == '{') - i32::from(letter == '}');
+        depth == 0
+    });
+    &text[..end.unwrap_or(text.len())]
+}
+
+/// Whether a text has a word outside of what it formats, that is no unit and not the name of a variable of the build.
+fn is_word(text: &str) -> bool {
+    let outside = text.split('{').map(|part| part.split_once('}').map_or(part, |(_, rest)| rest));
+    let mut words = outside.flat_map(|part| part.split(|letter: char| !letter.is_alphabetic()));
+    let is_one = |word: &str| word.chars().count() > 1 && word.chars().any(char::is_lowercase);
+    words.any(|word| is_one(word) && !SYMBOLS.contains(&word))
 }
 
 /// What the window puts together and is no message: the file, and why.

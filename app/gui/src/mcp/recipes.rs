@@ -446,7 +446,7 @@ fn consequence(
     let is_new = [action_field.as_str(), "type", "digital", end, "load_home"].into_iter().any(is_edited);
     let mode = PinMode::of(unit.wanted, pin).filter(|mode| *mode != PinMode::None)?;
     let (what, name) = (what(unit, pin, action)?, unit.table.subject().pin_name(pin - 1));
-    let end_text = if end == "min" { "low end" } else { "high end" };
+    let end_name = if end == "min" { PinMessage::LowEnd } else { PinMessage::HighEnd }.into();
     if !is_new {
         return None;
     }
@@ -460,9 +460,9 @@ fn consequence(
         _ => None,
     };
     Some(match stands_there {
-        Some(true) => (IndicatorState::Warning, PinMessage::AtOnce { pin: name, end: end_text, what }.into()),
-        Some(false) => (IndicatorState::Unknown, PinMessage::Later { pin: name, end: end_text, what }.into()),
-        None => (IndicatorState::Warning, PinMessage::Unseen { pin: name, end: end_text, what }.into()),
+        Some(true) => (IndicatorState::Warning, PinMessage::AtOnce { pin: name, end: end_name, what }.into()),
+        Some(false) => (IndicatorState::Unknown, PinMessage::Later { pin: name, end: end_name, what }.into()),
+        None => (IndicatorState::Warning, PinMessage::Unseen { pin: name, end: end_name, what }.into()),
     })
 }
 

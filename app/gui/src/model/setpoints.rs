@@ -17,13 +17,6 @@ impl Direction {
             Self::Forward => 1.0,
         }
     }
-
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Backward => "backward",
-            Self::Forward => "forward",
-        }
-    }
 }
 
 /// Two setpoints, in the unit of their screen.

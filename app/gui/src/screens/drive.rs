@@ -180,9 +180,11 @@ pub fn motor_ui(
         let armed = model.front.link.arming.is_armed_for(output.scope);
         ui.add_enabled_ui(armed && !model.front.is_guided(), |ui| {
             let jog = |ui: &mut Ui, direction: Direction| {
-                let name = MotorFieldMessage::Jog {
-                    motor: if is_only { "Motor".to_owned() } else { motor.to_string() },
-                    direction: direction.word(),
+                let name = match (direction, is_only) {
+                    (Direction::Backward, true) => MotorFieldMessage::JogOnlyBackward,
+                    (Direction::Backward, false) => MotorFieldMessage::JogBackward { motor },
+                    (Direction::Forward, true) => MotorFieldMessage::JogOnlyForward,
+                    (Direction::Forward, false) => MotorFieldMessage::JogForward { motor },
                 }
                 .to_string();
                 let hint = "Runs the motor while it is held: by mouse, or by Enter while it has the focus";

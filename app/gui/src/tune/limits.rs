@@ -7,7 +7,7 @@ use egui::{Label, RichText, Ui};
 
 use super::run::Run;
 use crate::theme::Palette;
-use crate::tune::messages::RunMessage;
+use crate::tune::messages::{BoundMessage, RunMessage};
 
 pub fn limits_ui(ui: &mut Ui, run: &Run) {
     let Some((text, is_beyond)) = sentence(run) else { return };
@@ -25,34 +25,34 @@ fn sentence(run: &Run) -> Option<(String, bool)> {
         return None;
     }
     let limit = limit_at(task, run.report.request.level, run.level, &shown.gains);
-    let mut text = limit.map_or_else(unlimited, |limit| limited(&limit, run.level));
+    let mut said = limit.map_or(RunMessage::Unlimited, |limit| limited(&limit, run.level));
     if run.is_as_proposed() && run.report.causes.contains(&Cause::BackedOff) {
-        text = RunMessage::TookBack { limit: text }.to_string();
+        said = RunMessage::TookBack { limit: said.into() };
     }
-    Some((text, limit.is_some_and(|limit| limit.used > BEYOND)))
+    Some((said.to_string(), limit.is_some_and(|limit| limit.used > BEYOND)))
 }
 
 /// Rounding to registers may pass a bound by a little.
 const BEYOND: f64 = 1.02;
 
-fn unlimited() -> String {
-    "No bound limits here: stiffer gains would overshoot more without following better, so the level changes little.".to_owned()
-}
-
-fn limited(limit: &Limit, level: f64) -> String {
+fn limited(limit: &Limit, level: f64) -> RunMessage {
     let percent = 100.0 * limit.used;
-    let verb = if limit.used > BEYOND { "Beyond" } else { "Limited by" };
-    let what = match limit.by {
-        Bound::Sensitivity => "the maximum sensitivity Ms",
-        Bound::Lag => "the lag of the loop: Ms with the largest lag that is likely",
-        Bound::LightLoad => "a lighter load: Ms at half the inertia",
-        Bound::DutyNoise => "the duty noise, which the rounding of counts makes",
-        Bound::Backlash => "the backlash of the mechanics: a quicker integral would make it hunt",
+    let by = match limit.by {
+        Bound::Sensitivity => BoundMessage::Sensitivity,
+        Bound::Lag => BoundMessage::Lag,
+        Bound::LightLoad => BoundMessage::LightLoad,
+        Bound::DutyNoise => BoundMessage::DutyNoise,
+        Bound::Backlash => BoundMessage::Backlash,
     };
-    match limit.by {
-        Bound::Backlash => format!("{verb} {what}."),
-        Bound::Sensitivity | Bound::Lag | Bound::LightLoad | Bound::DutyNoise => {
-            RunMessage::Limit { verb, what, percent, level }.to_string()
+    let by = by.into();
+    match (limit.by, limit.used > BEYOND) {
+        (Bound::Backlash, true) => RunMessage::BeyondAtAnyLevel { by },
+        (Bound::Backlash, false) => RunMessage::LimitedAtAnyLevel { by },
+        (Bound::Sensitivity | Bound::Lag | Bound::LightLoad | Bound::DutyNoise, true) => {
+            RunMessage::Beyond { by, percent, level }
+        }
+        (Bound::Sensitivity | Bound::Lag | Bound::LightLoad | Bound::DutyNoise, false) => {
+            RunMessage::Limited { by, percent, level }
         }
     }
 }
@@ -65,13 +65,12 @@ mod tests {
     fn each_bound_has_its_own_words() {
         let bounds = [Bound::Sensitivity, Bound::Lag, Bound::LightLoad, Bound::DutyNoise, Bound::Backlash];
         let said: Vec<String> =
-            bounds.iter().map(|by| limited(&Limit { by: *by, used: 0.9 }, 50.0)).collect();
+            bounds.iter().map(|by| limited(&Limit { by: *by, used: 0.9 }, 50.0).to_string()).collect();
         for (n, text) in said.iter().enumerate() {
             assert!(text.starts_with("Limited by") && text.ends_with('.'), "{text}");
             assert!(!said[..n].contains(text), "{text}");
         }
-        assert!(
-            limited(&Limit { by: Bound::DutyNoise, used: 1.4 }, 50.0).starts_with("Beyond the duty noise")
-        );
+        let beyond = limited(&Limit { by: Bound::DutyNoise, used: 1.4 }, 50.0).to_string();
+        assert!(beyond.starts_with("Beyond the duty noise"), "{beyond}");
     }
 }

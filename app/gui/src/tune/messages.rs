@@ -4,6 +4,17 @@ use brushwork_core::messages::EndedMessage;
 use brushwork_values::{Message, Motor, messages};
 
 messages! {
+    /// What keeps gains from being stiffer.
+    pub enum BoundMessage {
+        Sensitivity "the maximum sensitivity Ms",
+        Lag "the lag of the loop: Ms with the largest lag that is likely",
+        LightLoad "a lighter load: Ms at half the inertia",
+        DutyNoise "the duty noise, which the rounding of counts makes",
+        Backlash "the backlash of the mechanics: a quicker integral would make it hunt",
+    }
+}
+
+messages! {
     /// What to do next in tuning by hand, by the last moves of the motor.
     pub enum AdviceMessage {
         Watching "Watching the motor: leave the slider where it is for a moment.",
@@ -45,13 +56,18 @@ messages! {
     pub enum RunMessage {
         SecondsLeft { seconds: f64 } "about {seconds:.0} s left",
         Tuning { motor: Motor } "Tuning {motor}",
-        TookBack { limit: String } "The run took gains back, since the machine was rougher than the model. {limit}",
-        Limit { verb: &'static str, what: &'static str, percent: f64, level: f64 } "{verb} {what}; {percent:.0} % of what level {level:.0} allows.",
+        TookBack { limit: Message } "The run took gains back, since the machine was rougher than the model. {limit}",
+        Limited { by: Message, percent: f64, level: f64 } "Limited by {by}; {percent:.0} % of what level {level:.0} allows.",
+        Beyond { by: Message, percent: f64, level: f64 } "Beyond {by}; {percent:.0} % of what level {level:.0} allows.",
+        LimitedAtAnyLevel { by: Message } "Limited by {by}.",
+        BeyondAtAnyLevel { by: Message } "Beyond {by}.",
+        Unlimited "No bound limits here: stiffer gains would overshoot more without following better, so the level changes little.",
         Cleared { motor: Motor } "L and R of {motor} are cleared. They are put back after the run.",
         StoppedBy { by: EndedMessage } "The run was stopped: {by}.",
         NotTuned { motor: Motor, number: usize, seconds: f64 } "{motor} was not tuned · run {number} · {seconds:.1} s",
         Ended { verdict: &'static str, number: usize, seconds: f64 } "{verdict} · run {number} · {seconds:.1} s",
-        FeedForward { register: &'static str, raw: i64, percent: f64, rest: &'static str } "Feed-forward: {register} {raw} gives {percent:.0} % of a speed's duty.{rest}",
+        FeedForward { register: &'static str, raw: i64, percent: f64 } "Feed-forward: {register} {raw} gives {percent:.0} % of a speed's duty.",
+        FeedForwardInPart { register: &'static str, raw: i64, percent: f64 } "Feed-forward: {register} {raw} gives {percent:.0} % of a speed's duty. The loop makes up for the rest; the design counts on no more than this.",
         Model { qpps: f64, gain_interval_percent: f64, time_constant_ms: f64, time_interval_percent: f64, friction_percent: f64 } "Motor: {qpps:.0} counts/s at full duty ± {gain_interval_percent:.2} %, time constant {time_constant_ms:.1} ms ± {time_interval_percent:.0} %, friction {friction_percent:.1} % duty",
         Lag { low: f64, high: f64 } ", lag {low:.1} to {high:.1} ms",
         Backlash { counts: f64, interval: f64 } ", backlash of at least {counts:.1} ± {interval:.1} counts",

@@ -113,12 +113,13 @@ fn feed_forward_text(run: Option<&Run>) -> Option<String> {
     let run = run?;
     let given = run.shown.as_ref()?.registers.feed_forward(run.report.qpps?)?;
     let percent = 100.0 * given.share.min(1.0);
-    let rest = if percent < 99.5 {
-        " The loop makes up for the rest; the design counts on no more than this."
+    let (register, raw) = (given.register, given.raw);
+    let said = if percent < 99.5 {
+        RunMessage::FeedForwardInPart { register, raw, percent }
     } else {
-        ""
+        RunMessage::FeedForward { register, raw, percent }
     };
-    Some(RunMessage::FeedForward { register: given.register, raw: given.raw, percent, rest }.to_string())
+    Some(said.to_string())
 }
 
 /// What was found of the motor, in one line.

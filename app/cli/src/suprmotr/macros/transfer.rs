@@ -141,6 +141,6 @@ impl<'a> Board<'a> {
                 _ => {}
             }
         }
-        Err(Exit::NoLink.saying(CliMacroMessage::NoReport { command: "the line".to_owned() }))
+        Err(Exit::NoLink.saying(CliMacroMessage::NoReportOfLine))
     }
 }

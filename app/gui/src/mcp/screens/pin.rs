@@ -15,6 +15,7 @@ use super::calibrate::calibrate_ui;
 use super::signal_graph::signal_graph_ui;
 use crate::command::{Command, Commands};
 use crate::mcp::messages::SignalMessage;
+use crate::messages::PinMessage;
 use crate::model::{GeneralView, Section, UnitSettings};
 use crate::screens::general::rows::{self, Columns};
 use crate::widgets::readout::Readout;
@@ -187,8 +188,8 @@ fn reading_text(behind: Behind) -> String {
     match behind {
         Behind::Reading(reading) => reading.to_string(),
         Behind::Deadband => "at rest".to_owned(),
-        Behind::LowEnd => "low end".to_owned(),
-        Behind::HighEnd => "high end".to_owned(),
+        Behind::LowEnd => PinMessage::LowEnd.to_string(),
+        Behind::HighEnd => PinMessage::HighEnd.to_string(),
     }
 }
 

@@ -11,7 +11,7 @@ use brushwork_values::{Value, Values};
 
 use brushwork_core::keep::TrialKeeper;
 
-const JOB: ActMessage = ActMessage::KeepBackup { act: "command" };
+const JOB: ActMessage = ActMessage::KeepBackupOfCommand;
 /// A serial line of 2400 bit/s takes most of it.
 const LIMIT: Duration = Duration::from_secs(120);
 

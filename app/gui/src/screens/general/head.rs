@@ -157,13 +157,15 @@ fn filter_ui(ui: &mut Ui, general: &mut GeneralView<'_>, words: &SettingsWords, 
         {
             unit.revert_all();
         }
-        for (text, again) in [("Undo", false), ("Redo", true)] {
+        for (text, again, spoken, hint) in [
+            ("Undo", false, SettingMessage::Undo, SettingMessage::UndoLast),
+            ("Redo", true, SettingMessage::Redo, SettingMessage::RedoLast),
+        ] {
             let can =
                 general.unit().is_some_and(|unit| if again { unit.can_redo() } else { unit.can_undo() });
             let response = ui.add_enabled(can, Button::new(text));
-            let spoken = SettingMessage::StepEdit { word: text }.to_string();
-            response.widget_info(|| WidgetInfo::labeled(Role::Button, can, &spoken));
-            if response.on_hover_text(SettingMessage::StepLastEdit { word: text }.to_string()).clicked() {
+            response.widget_info(|| WidgetInfo::labeled(Role::Button, can, spoken.to_string()));
+            if response.on_hover_text(hint.to_string()).clicked() {
                 commands.push(Command::StepSettings { again });
             }
         }

@@ -119,8 +119,9 @@ fn shown_ui(ui: &mut Ui, front: &mut Connection, judged: &Judged, commands: &mut
 fn place_text(front: &Connection, step: PathStep) -> String {
     let family = front.family();
     match step.place {
-        Place::Settings(groups) => ButtonMessage::GoTo {
-            place: front.first_row_of(groups).map_or("Settings", |row| row.group.label()).to_string(),
+        Place::Settings(groups) => match front.first_row_of(groups) {
+            Some(row) => ButtonMessage::GoTo { place: row.group.label().to_string() },
+            None => ButtonMessage::GoToSettings,
         }
         .to_string(),
         Place::Screen(screen) => ButtonMessage::GoTo { place: family.title(screen).to_string() }.to_string(),

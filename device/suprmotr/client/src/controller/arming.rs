@@ -53,10 +53,11 @@ pub fn check(unit: &mut SuprMotr, line: &mut Line<'_>) -> Result<ArmCheck, Excha
         warnings.push(SuprMotrDriverMessage::NoLimits.into());
     } else {
         warnings.push(SuprMotrDriverMessage::Fence.into());
-        for (bit, which) in [(inputs::NEGATIVE, "negative"), (inputs::POSITIVE, "positive")] {
-            if status.inputs & bit != 0 {
-                warnings.push(SuprMotrDriverMessage::AtLimit { which }.into());
-            }
+        if status.inputs & inputs::NEGATIVE != 0 {
+            warnings.push(SuprMotrDriverMessage::AtNegativeLimit.into());
+        }
+        if status.inputs & inputs::POSITIVE != 0 {
+            warnings.push(SuprMotrDriverMessage::AtPositiveLimit.into());
         }
     }
     let reasons = objections
