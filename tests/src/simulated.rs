@@ -65,9 +65,19 @@ impl OnPty {
     /// When the system gives no pseudo-terminal.
     #[must_use]
     pub fn line(addresses: &[u8]) -> Self {
+        Self::line_of(ControllerConfig::default().generation, addresses)
+    }
+
+    /// The same with firmware of a generation.
+    ///
+    /// # Panics
+    /// When the system gives no pseudo-terminal.
+    #[must_use]
+    pub fn line_of(generation: Generation, addresses: &[u8]) -> Self {
         let unit = |address: &u8| {
             let address_of_unit = Address::new(*address).expect("an address of packet serial");
-            let mut config = ControllerConfig { address: address_of_unit, ..ControllerConfig::default() };
+            let mut config =
+                ControllerConfig { generation, address: address_of_unit, ..ControllerConfig::default() };
             let mut settings = Settings::factory(config.model, *address);
             settings.streams[StreamIndex::Uart1.index()].timeout_ms = PATIENT_TIME_OUT.as_millis() as u32;
             config.settings = Some(settings);

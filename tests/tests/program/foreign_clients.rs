@@ -131,3 +131,17 @@ fn every_generation_has_the_widths_that_public_clients_expect() {
         assert!(findings.findings.len() >= 25, "{generation}: only {}", findings.findings.len());
     }
 }
+
+#[test]
+fn five_controllers_on_one_line_do_each_what_a_foreign_client_tells_it() {
+    if foreign::is_left_out("python") {
+        return;
+    }
+    for generation in Generation::ALL {
+        let mut line = OnPty::line_of(generation, &[0x80, 0x81, 0x82, 0x83, 0x84]);
+        let port = line.port();
+        let findings = foreign::run("rover_check.py", &port, &["0x80", "5"], &mut line);
+        assert!(findings.failures().is_empty(), "{generation}: {:#?}", findings.failures());
+        assert_eq!(findings.findings.len(), 7, "{generation}");
+    }
+}
