@@ -50,6 +50,7 @@ coded! {
     SAME_CASE = "W411", "A Case that an earlier one has already.";
     UNREACHABLE = "W412", "Statements that nothing leads to.";
     NO_RETURN = "W413", "A function with a value that never sets one: it gives 0.";
+    MOTOR_OF_STEPPER = "W414", "A motor that is a coil of a stepper which the program moves.";
     MORE_WARNINGS = "W423", "More warnings than are listed.";
 }
 

@@ -61,7 +61,11 @@ fn of_character(letter: char) -> (String, &'static str) {
         '{' | '}' | '[' | ']' => "Arguments stand behind the command, those of a function in parentheses.",
         '?' => "The manual writes ?Name? where a value is to be put.",
         '/' | '#' => "A comment begins with a semicolon.",
-        '&' | '|' | '!' => "Conditions are joined with And, Or and Not.",
+        '!' => "Not equal is <>; Not turns a condition round.",
+        '&' => "Conditions are joined with And; a hexadecimal number is written 1FH or 0x1F.",
+        '|' => "Conditions are joined with And, Or and Not.",
+        '.' => "Numbers are whole.",
+        ':' => "One statement stands in a line.",
         _ => "Take it out.",
     };
     if letter.is_control() {

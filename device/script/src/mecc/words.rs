@@ -104,6 +104,41 @@ pub const FORM_UNKNOWN: [(&str, &str); 2] = [
     ("randomise", "Take GetClock() Mod a number for one that nobody foresees."),
 ];
 
+/// Words of other languages, in small letters, and what stands for them here.
+const FOREIGN: [(&str, &str); 25] = [
+    ("break", "There is none: a Do ends where its Until holds, a function with Return."),
+    ("const", "Declare a variable with its value: Declare Byte name = 5"),
+    ("dim", "Variables are declared: Declare Byte name"),
+    ("elseif", "Write Else, and the next If with its own End If in the lines below."),
+    ("elsif", "Write Else, and the next If with its own End If in the lines below."),
+    ("enddatatable", "It is two words: End DataTable"),
+    ("endeventhandler", "It is two words: End EventHandler"),
+    ("endfunction", "It is two words: End Function"),
+    ("endif", "It is two words: End If"),
+    ("endloop", "It is two words: End Loop"),
+    ("endprogram", "It is two words: End Program"),
+    ("endselect", "It is two words: End Select"),
+    ("endwhile", "It is two words: End While"),
+    ("exit", "There is none: a Do ends where its Until holds, a function with Return."),
+    ("for", "Count in a loop: Do, Increment variable, Until variable > 5"),
+    ("gosub", "A function is called: Call function()"),
+    ("goto", "There is none: use Loop, Do, While or a function."),
+    ("int", "Variables are declared: Declare Word name"),
+    ("let", "Leave it out: variable = value"),
+    ("next", "Loops end with their own words: End Loop, Until, End While."),
+    ("print", "DisplayChars shows two characters, Transmit sends eight bytes."),
+    ("sleep", "It is Wait, in 128ths of a second."),
+    ("sub", "Functions are declared: Declare Function name()"),
+    ("var", "Variables are declared: Declare Byte name"),
+    ("wend", "A While ends with End While."),
+];
+
+/// What stands for a word, in small letters, of another language.
+#[must_use]
+pub fn instead_of(word: &str) -> Option<&'static str> {
+    FOREIGN.iter().find(|(foreign, _)| *foreign == word).map(|(_, hint)| *hint)
+}
+
 /// Words that cannot be names.
 const RESERVED: [&str; 54] = [
     "and",
@@ -193,6 +228,7 @@ mod tests {
     #[test]
     fn the_tables_are_in_order_and_every_command_has_its_row() {
         assert!(RESERVED.is_sorted());
+        assert!(FOREIGN.is_sorted() && FOREIGN.iter().all(|(word, _)| !is_reserved(word)));
         assert!(STATEMENTS.is_sorted_by_key(|row| row.name) && FUNCTIONS.is_sorted_by_key(|row| row.name));
         for command in Board::ALL {
             assert!(!syntax(command.word()).is_empty(), "{command:?}");

@@ -5,4 +5,5 @@ mod driven;
 mod host;
 mod line;
 mod manual;
+mod odd;
 mod programs;

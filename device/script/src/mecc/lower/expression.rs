@@ -64,7 +64,7 @@ impl Lowering<'_> {
                 self.emit(Op::LoadByte);
                 self.move_on(cell, 1);
             }
-            ExprKind::Address(table) => match self.look_up(table) {
+            ExprKind::Address(table) => match self.look_up_or(table, "Declare DataTable name") {
                 Some(Meaning::Table(at, _)) => {
                     self.used(table);
                     self.facts.has_pointers = true;
@@ -154,7 +154,7 @@ impl Lowering<'_> {
 
     /// Calls a function; what it returns, or nothing if it is none.
     pub fn call(&mut self, name: &Name, arguments: &[Expr]) -> Option<Option<Kind>> {
-        let function = match self.look_up(name)? {
+        let function = match self.look_up_or(name, "Declare Function name() ... End Function")? {
             Meaning::Function(function) => function,
             other @ (Meaning::Variable(..) | Meaning::Table(..) | Meaning::Handler(_)) => {
                 let message = format!("`{}` is {}, no function.", name.span.of(self.text), other.title());

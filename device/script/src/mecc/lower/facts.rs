@@ -15,6 +15,10 @@ pub struct Facts {
     pub waits: Vec<(Span, u32)>,
     /// Constant timers of SetTimer.
     pub timers: Vec<(Span, u32)>,
+    /// Constant motors of SetMotor.
+    pub motors: Vec<(Span, u32)>,
+    /// Steppers that are configured or moved, a bit each, stepper 1 in bit 0.
+    pub steppers: u32,
     /// Constants of SetTimer that are seconds of the older clock.
     pub old: Vec<(Span, u32)>,
     /// Constants that are compared, or given to functions: seconds of GetClock perhaps.

@@ -178,7 +178,9 @@ impl<'a> Lowering<'a> {
             let hint = Some("Write Begin Program, what is to be done, and End Program.".to_owned());
             self.report(codes::NO_PROGRAM, Span::new(end, end), message, hint);
         }
-        self.ram_bytes = self.global_bytes.into();
+        // Behind the globals lie some bytes of nothing, which a frame that begins in the last table sends. What routines and Select keep for
+        // themselves lies behind those.
+        self.ram_bytes = u64::from(self.global_bytes) + u64::from(FRAME_BYTES);
         self.entries = vec![0; routine];
     }
 
@@ -368,6 +370,11 @@ impl<'a> Lowering<'a> {
 
     /// What a name stands for; one that is not known is reported.
     fn look_up(&mut self, name: &Name) -> Option<Meaning> {
+        self.look_up_or(name, "Declare Byte name")
+    }
+
+    /// The same where the declaration that is lacking would be this one.
+    fn look_up_or(&mut self, name: &Name, declaration: &str) -> Option<Meaning> {
         if let Some(symbol) = self.locals.get(&name.key) {
             if symbol.is_known {
                 return Some(symbol.meaning.clone());
@@ -384,7 +391,7 @@ impl<'a> Lowering<'a> {
         let shown = name.span.of(self.text);
         let hint = match shown.len() {
             1 => format!("Declare it, or write a character in quotes: \"{shown}\""),
-            _ => self.meant(name).unwrap_or_else(|| "Declare it: Declare Byte name".to_owned()),
+            _ => self.meant(name).unwrap_or_else(|| format!("Declare it: {declaration}")),
         };
         let message = format!("`{}` is not declared.", crate::diagnostic::excerpt(name.span.of(self.text)));
         self.report(codes::UNKNOWN_NAME, name.span, message, Some(hint));
@@ -478,8 +485,6 @@ impl<'a> Lowering<'a> {
 
     /// Says what of the program does not fit.
     fn check_size(&mut self) {
-        // Behind the variables lie some bytes of nothing, which a frame that begins in the last table sends.
-        self.ram_bytes += u64::from(FRAME_BYTES);
         let whole = Span::new(0, self.text.find('\n').unwrap_or(self.text.len()));
         let instructions = self.ops.len() + self.surplus;
         let names = self.globals.len() + self.shown.len();

@@ -212,7 +212,7 @@ impl Lowering<'_> {
     }
 
     fn set_event(&mut self, event: u32, handler: &Name) {
-        match self.look_up(handler) {
+        match self.look_up_or(handler, "Declare EventHandler name() ... End EventHandler") {
             Some(Meaning::Handler(routine)) => {
                 self.used(handler);
                 self.facts.handled |= 1 << event;
@@ -283,6 +283,13 @@ impl Lowering<'_> {
         for ((name, takes), argument) in ranges.iter().zip(arguments) {
             let Some(value) = self.constant(argument) else { continue };
             self.check_argument(command, name, *takes, value, argument);
+        }
+        let first = arguments.first().and_then(|first| Some((first.span, self.constant(first)?)));
+        if let (Board::SetMotor, Some(motor)) = (command, first) {
+            self.facts.motors.push(motor);
+        }
+        if let (Board::ConfigStepper | Board::SetStepper, Some((_, stepper @ 1..=2))) = (command, first) {
+            self.facts.steppers |= 1 << (stepper - 1);
         }
         if command == Board::SetTimer {
             if let Some(timer) = arguments.first().and_then(|timer| self.constant(timer)) {

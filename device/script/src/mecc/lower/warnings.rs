@@ -18,6 +18,7 @@ impl Lowering<'_> {
         self.warn_of_old_clocks(&facts);
         self.warn_of_events(&facts);
         self.warn_of_short_tables(&facts);
+        self.warn_of_shared_motors(&facts);
         for (form, span) in &facts.assumed {
             let message = format!("{form}: how it is written, or what it does, is assumed.");
             let hint =
@@ -53,6 +54,19 @@ impl Lowering<'_> {
             let message = format!("Nothing else runs in this wait of {seconds:.2} s, no handler either.");
             let hint = "Set a timer with SetTimer, or wait in a loop over GetClock().".to_owned();
             self.report(codes::LONG_WAIT, *span, message, Some(hint));
+        }
+    }
+
+    /// Stepper 1 uses motors A and B, stepper 2 motors C and D (manual, ConfigStepper).
+    fn warn_of_shared_motors(&mut self, facts: &Facts) {
+        for (span, motor) in facts.motors.iter().filter(|(_, motor)| (1..=4).contains(motor)) {
+            let stepper = motor.div_ceil(2);
+            if facts.steppers & 1 << (stepper - 1) != 0 {
+                let message =
+                    format!("Motor {motor} is a coil of stepper {stepper}, which this program moves.");
+                let hint = Some("Use another motor, or the other stepper.".to_owned());
+                self.report(codes::MOTOR_OF_STEPPER, *span, message, hint);
+            }
         }
     }
 

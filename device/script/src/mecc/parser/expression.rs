@@ -113,11 +113,28 @@ impl Parser<'_> {
             TokenKind::Sign(_) | TokenKind::Comment | TokenKind::Newline | TokenKind::End => {
                 let found = self.found_here();
                 let message = format!("A value should stand here, but there is {found}.");
-                let hint =
-                    "A value is a number, one character in quotes, a variable or a function.".to_owned();
+                let is_comparison = ["=", "<", ">"].into_iter().any(|sign| self.is_sign(sign));
+                let hint = if self.is_sign("=") && self.is_behind("=") {
+                    "One = compares."
+                } else if is_comparison && self.is_behind_comparison() {
+                    "Comparisons are written =, <>, <, >, <= and >=."
+                } else {
+                    "A value is a number, one character in quotes, a variable or a function."
+                };
+                let hint = hint.to_owned();
                 self.fail(codes::UNEXPECTED, message, Some(hint))
             }
         }
+    }
+
+    /// Whether this sign stands before what is read now.
+    fn is_behind(&self, sign: &str) -> bool {
+        let before = self.at.checked_sub(1).and_then(|at| self.tokens.get(at));
+        before.is_some_and(|token| matches!(token.kind, TokenKind::Sign(here) if here == sign))
+    }
+
+    fn is_behind_comparison(&self) -> bool {
+        RANKS[COMPARISONS].iter().any(|(sign, _)| self.is_behind(sign))
     }
 
     fn word_operand(&mut self) -> Parse<Expr> {

@@ -112,7 +112,8 @@ impl Parser<'_> {
             let hint = if is_call {
                 Some(format!("A function is called with Call: Call {typed}(...)"))
             } else {
-                self.meant(&typed)
+                let small = typed.to_ascii_lowercase();
+                words::instead_of(&small).map(str::to_owned).or_else(|| self.meant(&typed))
             };
             let hint = hint
                 .unwrap_or_else(|| "A variable is set with =, a function is called with Call.".to_owned());
