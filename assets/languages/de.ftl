@@ -334,6 +334,8 @@ start =
     .opened-before = Früher geöffnet
     .a-simulated-controller-in-this-program = Ein simulierter Regler, in diesem Programm
     .it-answers-like-the-real-one-with-motors-supply-and-faults-of = Er antwortet wie der echte, mit eigenen Motoren, eigener Versorgung und eigenen Fehlern. Nichts kann kaputtgehen.
+    .it-runs-the-program-through-which-this-window-drives-it-a-program = Er führt das Programm aus, über das dieses Fenster ihn steuert. Ein eigenes Programm, das hier aus einer Datei geöffnet ist, kann an seine Stelle treten.
+    .opens-a-simulated-board-that-runs-this-file-as-it-was-saved = Öffnet eine simulierte Platine, die diese Datei ausführt, wie sie gespeichert ist
     .other-models-are-chosen-at-the-left-beside-simulated = Andere Modelle werden links neben „Simuliert“ gewählt.
 
 ShellMessage =
@@ -376,6 +378,7 @@ ButtonMessage =
     .Copies = Kopiert { $text }
     .ConnectTo = Mit { $target } verbinden
     .Open = { $name } öffnen
+    .Run = { $program } ausführen
 
 PanelMessage =
     .Toolbar = Werkzeugleiste: { $action }

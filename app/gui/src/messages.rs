@@ -2,7 +2,7 @@
 
 use brushwork_canopen::NodeId;
 use brushwork_core::messages::EndedMessage;
-use brushwork_link::device::{ArmScope, DisarmReason};
+use brushwork_link::device::DisarmReason;
 use brushwork_link::{Interruption, Message};
 use brushwork_values::{Motor, Sentences, messages};
 
@@ -353,7 +353,7 @@ messages! {
         Found { title: String, found: Message, warned: Message } "{title} has {found} and {warned}.",
         Printed { title: String } "{title} is with the printer.",
         NoName "There is no name at the caret. Put it on a variable, a constant or a label.",
-        OfTheLanguage { word: String } "{word} is a word of MCL and not defined in the program.",
+        OfTheLanguage { word: String, language: &'static str } "{word} is a word of {language} and not defined in the program.",
         NotDefined { word: String } "{word} is not defined in this program.",
         NoBlock "Put the caret on a word such as IF, ELSE, WHILE or NEXT first.",
         NotRenamed { why: Message } "The name stays as it is: {why}.",
@@ -491,7 +491,8 @@ messages! {
         Profile { name: String } "Profile {name}",
         Backup { title: String } "Backup {title}",
         Line { line: u32 } "Line {line}",
-        ArmedFor { scope: ArmScope } "Armed for {scope}",
+        ArmedFor { scope: String } "Armed for {scope}",
+        Screen { title: &'static str } "the {title} screen",
         RunLine { number: usize } "run {number}",
         Program { version: &'static str } "Brushwork {version}",
         System { licence: &'static str, system: &'static str, processor: &'static str } "Licence: {licence}. System: {system} on {processor}.",
@@ -520,6 +521,7 @@ messages! {
         SetQpps { motor: Motor } "Set QPPS of {motor}",
         ConnectTo { target: String } "Connect to {target}",
         Open { name: String } "Open {name}",
+        Run { program: String } "Run {program}",
         Close { title: String } "Close {title}",
         GoTo { place: String } "Go to {place}",
         GoToSettings "Go to Settings",

@@ -1,6 +1,6 @@
 //! The commands on a simulated MotorVator: one that runs the host library, and one that does not.
 
-use crate::cli::{DONE, REFUSED, Run, Simulated, USAGE, name, program, run};
+use crate::cli::{DONE, NO_LINK, REFUSED, Run, Simulated, USAGE, name, program, run};
 use serde_json::Value;
 
 /// A program of the manual.
@@ -114,4 +114,19 @@ fn traffic_typed_lines_and_the_protocol_are_told_in_words() {
         .prints("start the program");
     run(program().args(["protocol", "--family", "motorvator", "M"])).ended_with(DONE).prints("order 77 (M)");
     run(program().args(["protocol", "--family", "motorvator", "Z"])).ended_with(USAGE);
+}
+
+#[test]
+fn a_simulated_board_runs_the_program_that_its_target_names_or_says_where_that_is_wrong() {
+    let on = |program_file: &str, words: &[&str]| {
+        run(program().args(words).args(["--connect", &format!("sim:motorvator-3,program={program_file}")]))
+    };
+    on(FLASH, &["status"]).ended_with(DONE).prints("The host library does not answer");
+    let folder = tempfile::tempdir().expect("a temporary folder can be made");
+    let path = folder.path().join("wrong.mecc");
+    std::fs::write(&path, "Begin Program\n    Bep 1, 2\n    Wait\nEnd Program\n").expect("it takes it");
+    on(name(&path), &["status"])
+        .ended_with(NO_LINK)
+        .explains(&format!("{}:2:5: error E210: `Bep` is no command (and 1 more error).", name(&path)));
+    on("/nowhere/a.mecc", &["status"]).ended_with(NO_LINK).explains("/nowhere/a.mecc cannot be read");
 }

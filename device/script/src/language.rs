@@ -80,6 +80,16 @@ impl Language {
         let _ = BROUGHT.set(grammars);
     }
 
+    /// What it is called.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Mcl => "MCL",
+            Self::Mecc => "MeccCode",
+            Self::Brought(grammar) => grammar.name,
+        }
+    }
+
     /// How the names of its files end.
     #[must_use]
     pub const fn ending(self) -> &'static str {

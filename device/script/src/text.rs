@@ -47,6 +47,16 @@ pub struct Place {
     pub column: u32,
 }
 
+/// The text of a file: UTF-8 with or without its mark, else a character for each byte, as old editors write it.
+#[must_use]
+pub fn decoded(mut bytes: Vec<u8>) -> String {
+    const MARK: &[u8] = b"\xEF\xBB\xBF";
+    if bytes.starts_with(MARK) {
+        bytes.drain(..MARK.len());
+    }
+    String::from_utf8(bytes).unwrap_or_else(|error| error.into_bytes().into_iter().map(char::from).collect())
+}
+
 /// Where the lines of a text begin.
 #[derive(Clone, Debug)]
 pub struct Lines {

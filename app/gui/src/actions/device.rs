@@ -7,6 +7,7 @@ use egui::Key;
 
 use super::{Action, Keys, Ready, always, connected, ctrl, ctrl_shift, key, only, settings_idle};
 use crate::command::Command;
+use crate::debugger::DebugAction;
 use crate::family::Ability;
 use crate::mcl::MclAction;
 use crate::model::{Arming, Model, Phase, Screen, Section, Sheet, Tab};
@@ -67,10 +68,10 @@ pub(super) const ACTIONS: &[Action] = &[
         key(Key::F5), can_download_or_run, |_| Command::DownloadMcl),
     entry!(Device 4 "device.download-image", "Download the Maker's Image File…", "Downloads a script that the maker's own program has compiled, for real controllers.",
         Keys::None, |model| has(model, Ability::Scripts, connected), |_| Command::Mcl(MclAction::ChooseImage)),
-    entry!(Device 4 "device.start-script", "Start Script", "Starts the program that is in the controller.",
-        Keys::None, |model| has(model, Ability::Scripts, can_start_script), |_| Command::StartScript),
-    entry!(Device 4 "device.stop-script", "Stop Script", "Stops the program that runs in the controller.",
-        Keys::None, |model| has(model, Ability::Scripts, connected), |_| Command::StopScript),
+    entry!(Device 4 "device.start-script", "Start Script", "Starts the program that is in the controller; MeccCode is put into the simulated board's memory and begins there.",
+        Keys::None, can_start_or_run, |model| match runs_on_board(model) { true => Command::Debug(DebugAction::Run), false => Command::StartScript }),
+    entry!(Device 4 "device.stop-script", "Stop Script", "Stops the program that runs in the controller; on a simulated board the host library takes its place.",
+        Keys::None, can_stop_or_leave, |model| match runs_on_board(model) { true => Command::RunLibrary, false => Command::StopScript }),
     entry!(Device 5 "device.zero-m1", "Zero Encoder M1", "Sets the count of encoder 1 to zero.",
         Keys::None, connected, |_| Command::ZeroEncoder(Motor::M1)),
     entry!(Device 5 "device.zero-m2", "Zero Encoder M2", "Sets the count of encoder 2 to zero.",
@@ -127,6 +128,25 @@ fn can_download_or_run(model: &Model) -> Ready {
         return only(model.front.debug.takes_mecc, why);
     }
     has(model, Ability::Scripts, can_download)
+}
+
+/// Whether the program in front is one that the simulated board in front runs out of its memory.
+fn runs_on_board(model: &Model) -> bool {
+    model.front.debug.takes_mecc && model.mcl.front().language() == Language::Mecc
+}
+
+fn can_start_or_run(model: &Model) -> Ready {
+    if runs_on_board(model) {
+        return Ok(());
+    }
+    has(model, Ability::Scripts, can_start_script)
+}
+
+fn can_stop_or_leave(model: &Model) -> Ready {
+    if runs_on_board(model) {
+        return Ok(());
+    }
+    has(model, Ability::Scripts, connected)
 }
 
 fn can_download(model: &Model) -> Ready {

@@ -10,6 +10,7 @@ use crate::messages::WindowStatusMessage;
 use std::borrow::Cow;
 use std::sync::OnceLock;
 
+use brushwork_script::language::Language;
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 use super::command::{Command, Commands};
@@ -138,6 +139,9 @@ pub enum Keys {
     Stop,
 }
 
+/// How the names of actions begin that are about the program in front, whatever language that is in.
+const ABOUT_PROGRAMS: [&str; 4] = ["file.", "edit.", "view.", "device.check-mcl"];
+
 /// `Err` says in a sentence why an action cannot be done now.
 pub type Ready = Result<(), Cow<'static, str>>;
 
@@ -176,9 +180,25 @@ pub fn of_menu(menu: Menu) -> impl Iterator<Item = &'static Action> {
 }
 
 impl Action {
-    /// Its title in the language of the window.
-    pub fn said(&self) -> String {
-        word("action", self.title)
+    /// Its title in the language of the window. What is done to the program in front names that program's language in place of MCL.
+    pub fn said(&self, model: &Model) -> String {
+        self.about(model, word("action", self.title))
+    }
+
+    /// What it does, about the program in front.
+    pub fn help(&self, model: &Model) -> String {
+        self.about(model, self.help.to_owned())
+    }
+
+    fn about(&self, model: &Model, text: String) -> String {
+        match model.mcl.front().language() {
+            Language::Mcl => text,
+            language if ABOUT_PROGRAMS.iter().any(|ids| self.id.starts_with(ids)) => {
+                // The English article is that of the letters M-C-L.
+                text.replace("an MCL", "a MCL").replace("An MCL", "A MCL").replace("MCL", language.name())
+            }
+            Language::Mecc | Language::Brought(_) => text,
+        }
     }
 
     /// Its keys as text: "Ctrl+Shift+P". Empty when it has none.
@@ -230,7 +250,7 @@ pub fn shortcuts(ctx: &Context, model: &mut Model) -> Commands {
         match (action.ready)(model) {
             Ok(()) => commands.push((action.command)(model)),
             Err(why) => model.messages.warn(WindowStatusMessage::NotNow {
-                act: action.title.trim_end_matches('…').to_string(),
+                act: action.about(model, action.title.trim_end_matches('…').to_owned()),
                 why: why.to_string(),
             }),
         }

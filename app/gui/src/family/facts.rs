@@ -7,7 +7,7 @@ use brushwork_link::device::{
     Addresses, ArmScope, Channel, Drive, Identity, Indicator, Job, PinSignal, StatusReport,
 };
 use brushwork_link::settings::{Group, Row, SettingValue, SettingsImage, SettingsTable, Subject};
-use brushwork_script::language::Grammar;
+use brushwork_script::language::{Grammar, Language};
 use brushwork_script::program::Program;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::tune::Method;
@@ -212,6 +212,11 @@ pub trait Family: Sync {
     /// The models that this program simulates, by key and name, the one that is offered first at the head.
     fn simulated(&self) -> Vec<(&'static str, &'static str)> {
         Vec::new()
+    }
+
+    /// The language of the programs of which one can be named, by `program=FILE`, for the first of them to run.
+    fn simulated_program(&self) -> Option<Language> {
+        None
     }
 
     /// What that drives, in a few words under a picture of it.

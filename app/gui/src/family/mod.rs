@@ -7,7 +7,10 @@
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
-use brushwork_link::{Channel, FamilyRef};
+use brushwork_link::{ArmScope, Channel, FamilyRef};
+
+use crate::messages::NameMessage;
+use crate::model::Screen;
 
 mod facts;
 mod known;
@@ -44,6 +47,15 @@ pub fn all() -> &'static [&'static dyn Family] {
 pub fn of(family: FamilyRef) -> &'static dyn Family {
     let found = all().iter().find(|known| known.family() == family).copied();
     found.unwrap_or_else(|| panic!("the window has no family {}", family.key()))
+}
+
+/// What an armed scope is called for a family: its screen, by the title that the family gives it.
+pub fn armed_text(family: &dyn Family, scope: ArmScope) -> String {
+    let screen = Screen::ALL.into_iter().find(|screen| screen.arm_scope() == Some(scope));
+    match screen.filter(|screen| family.title(*screen) != screen.title()) {
+        Some(screen) => NameMessage::Screen { title: family.title(screen) }.to_string(),
+        None => scope.to_string(),
+    }
 }
 
 /// The family that is shown before anything was ever connected.
@@ -94,6 +106,14 @@ mod tests {
     /// Those that the tests of this crate have.
     pub(super) fn families() -> Vec<&'static dyn Family> {
         vec![&crate::mcp::Mcp, &crate::motion_mind::MotionMind]
+    }
+
+    #[test]
+    fn what_is_armed_has_the_title_that_the_family_gives_the_screen() {
+        assert_eq!(armed_text(&crate::mcp::Mcp, ArmScope::Pwm), "the PWM screen");
+        assert_eq!(armed_text(&crate::suprmotr::SuprMotr, ArmScope::Position), "the Motion screen");
+        assert_eq!(armed_text(&crate::motorvator::Motorvator, ArmScope::Position), "the Stepper screen");
+        assert_eq!(armed_text(&crate::motorvator::Motorvator, ArmScope::CommandLine), "the command line");
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! What the link tells the graph: samples with their own times, and events that become marks.
 
+use crate::family;
 use crate::graph::messages::MarkMessage;
 use crate::messages::NameMessage;
 use brushwork_link::device::{Drive, DriveCommand, Event, Reading, Sample};
@@ -44,11 +45,16 @@ impl LiveGraph {
             }
             Event::Stopped(report) => self.mark(report.written_at.as_secs_f64(), MarkKind::Stop, "Stop"),
             Event::Armed { scope, .. } => {
-                self.mark(now_s, MarkKind::Arm, NameMessage::ArmedFor { scope: *scope }.to_string());
+                let scope = match self.family {
+                    Some(known) => family::armed_text(family::of(known), *scope),
+                    None => scope.to_string(),
+                };
+                self.mark(now_s, MarkKind::Arm, NameMessage::ArmedFor { scope }.to_string());
             }
             Event::Disarmed(reason) => self.mark(now_s, MarkKind::Arm, reason.to_string()),
             Event::Connected(identity) => {
                 identity.title().clone_into(&mut self.files.device);
+                self.family = Some(identity.family);
                 let model = identity.model.and_then(|model| identity.family.model(model));
                 let pins = || identity.channels().iter().filter(|channel| channel.is_pin()).count();
                 self.pins =

@@ -9,7 +9,7 @@ use super::series::GAP;
 use super::track::ChannelInfo;
 use super::{Mark, MarkKind, Sheet, Track, TriggerMode, TriggerSource};
 use crate::graph::messages::GraphBarMessage;
-use brushwork_link::Message;
+use brushwork_link::{FamilyRef, Message};
 
 /// A channel that was read in each of this many samples and then in as many not has lost data.
 const MISSED_SAMPLES: u64 = 20;
@@ -30,6 +30,8 @@ pub struct LiveGraph {
     pub detached: bool,
     /// The channels of the legend that stands in the plot while the list beside it is folded away.
     pub legend: Option<Vec<usize>>,
+    /// The family of the unit, by which its screens are called.
+    pub family: Option<FamilyRef>,
     /// Input pins of the unit, for the list.
     pub pins: usize,
     /// Folders, names, dialogs, and what is being read and written.
@@ -74,6 +76,7 @@ impl LiveGraph {
             large: false,
             detached: false,
             legend: None,
+            family: None,
             pins: 0,
             files: GraphFiles::default(),
             last_plot_size: egui::vec2(800.0, 400.0),

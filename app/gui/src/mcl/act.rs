@@ -15,9 +15,7 @@ impl Editor {
     pub fn act(&mut self, action: MclAction, ctx: &Context) {
         let front = self.front().id();
         match action {
-            MclAction::New => {
-                self.open_new("");
-            }
+            MclAction::New => self.open_new_like_front(),
             MclAction::Example(index) => {
                 if let Some(example) = EXAMPLES.get(index) {
                     self.open_named(example.title, example.text);

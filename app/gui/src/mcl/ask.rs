@@ -38,9 +38,9 @@ pub fn ask_ui(ctx: &Context, editor: &mut Editor, room: Rect, actions: &mut Vec<
 
 fn title(sheet: &Sheet) -> &'static str {
     match sheet {
-        Sheet::Open(_) => "Open an MCL program",
-        Sheet::SaveAs { .. } => "Save the MCL program as",
-        Sheet::Print { .. } => "Print the MCL program",
+        Sheet::Open(_) => "Open a program",
+        Sheet::SaveAs { .. } => "Save the program as",
+        Sheet::Print { .. } => "Print the program",
         Sheet::Image(_) => "Download the maker's image file",
         Sheet::GoToLine(_) => "Go to line",
         Sheet::Rename(_) => "Rename",

@@ -1,6 +1,7 @@
 //! The open programs, and how all of them are shown.
 
 use brushwork_link::Message;
+use brushwork_script::language::Language;
 use std::path::PathBuf;
 
 use super::find::Find;
@@ -141,6 +142,16 @@ impl Editor {
         self.front = self.documents.len() - 1;
         self.turned();
         id
+    }
+
+    /// Opens an empty program in the language of the one in front.
+    pub fn open_new_like_front(&mut self) {
+        let language = self.front().language();
+        self.open_new("");
+        if language != Language::Mcl {
+            let front = self.front_mut();
+            front.untitled = format!("{}.{}", front.untitled, language.ending());
+        }
     }
 
     /// Opens a text that is in no file and has a name, such as an example.

@@ -99,7 +99,7 @@ impl Document {
             }
             None if word.is_empty() => Err(EditorMessage::NoName),
             None => Err(match self.language().help(&word) {
-                Some(_) => EditorMessage::OfTheLanguage { word },
+                Some(_) => EditorMessage::OfTheLanguage { word, language: self.language().name() },
                 None => EditorMessage::NotDefined { word },
             }),
         }

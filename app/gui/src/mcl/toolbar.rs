@@ -1,5 +1,6 @@
 //! The row of buttons above the text: the functions of Ion Studio's toolbar, in its order (MCP manual 1.2.14).
 
+use brushwork_script::language::Language;
 use egui::{Button, RichText, Role, Ui, WidgetInfo};
 
 use crate::actions;
@@ -29,6 +30,9 @@ pub fn toolbar_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
                 ui.separator();
             }
             for (id, reads) in *group {
+                if is_left_out(id, model) {
+                    continue;
+                }
                 let zoom = format!("{} %", model.mcl.options.zoom_percent);
                 let reads = if *id == "view.zoom-normal" { &zoom } else { *reads };
                 button_ui(ui, id, reads, model, commands);
@@ -37,13 +41,19 @@ pub fn toolbar_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     });
 }
 
+/// What a board runs is put into its memory by Run; nothing is downloaded to it.
+fn is_left_out(id: &str, model: &Model) -> bool {
+    id == "device.download-mcl" && model.mcl.front().language() != Language::Mcl
+}
+
 fn button_ui(ui: &mut Ui, id: &str, reads: &str, model: &Model, commands: &mut Commands) {
     let Some(action) = actions::all().find(|action| action.id == id) else { return };
     let ready = (action.ready)(model);
     let on = action.is_on.map(|is_on| is_on(model));
     let response = ui
         .add_enabled(ready.is_ok(), Button::selectable(on.unwrap_or(false), RichText::new(reads).size(12.5)));
-    let name = said(&PanelMessage::Toolbar { action: action.said().trim_end_matches('…').to_owned() });
+    let title = action.said(model);
+    let name = said(&PanelMessage::Toolbar { action: title.trim_end_matches('…').to_owned() });
     response.widget_info(|| match on {
         Some(on) => WidgetInfo::selected(Role::Button, ready.is_ok(), on, &name),
         None => WidgetInfo::labeled(Role::Button, ready.is_ok(), &name),
@@ -51,8 +61,8 @@ fn button_ui(ui: &mut Ui, id: &str, reads: &str, model: &Model, commands: &mut C
     let keys = action.keys_text(ui.ctx());
     let keys = if keys.is_empty() { keys } else { format!(" ({keys})") };
     let reported = match &ready {
-        Ok(()) => format!("{}{keys}\n{}", action.said(), action.help),
-        Err(why) => format!("{}{keys}\n{why}", action.said()),
+        Ok(()) => format!("{title}{keys}\n{}", action.help(model)),
+        Err(why) => format!("{title}{keys}\n{why}"),
     };
     if response.clicked() {
         commands.push((action.command)(model));

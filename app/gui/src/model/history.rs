@@ -179,12 +179,13 @@ impl History {
             }
             Event::Status(report) => self.note_status(report),
             Event::Armed { address, scope, .. } => {
-                self.push(
-                    self.now,
-                    Some(*address),
-                    Kind::Armed,
-                    NameMessage::ArmedFor { scope: *scope }.to_string(),
+                let identity = self.units.get(address).and_then(|unit| unit.identity.as_ref());
+                let scope = identity.map_or_else(
+                    || scope.to_string(),
+                    |identity| family::armed_text(family::of(identity.family), *scope),
                 );
+                let text = NameMessage::ArmedFor { scope }.to_string();
+                self.push(self.now, Some(*address), Kind::Armed, text);
             }
             Event::Disarmed(reason) => {
                 let by_fault = matches!(

@@ -175,7 +175,10 @@ impl LinkView {
                 self.refusals.clear();
                 vec![
                     Effect::AtRest,
-                    Effect::say(Gravity::Warning, WindowStatusMessage::Armed { scope: scope.to_string() }),
+                    Effect::say(
+                        Gravity::Warning,
+                        WindowStatusMessage::Armed { scope: self.armed_text(scope) },
+                    ),
                 ]
             }
             Event::Disarmed(reason) => self.disarmed(&reason),
@@ -201,6 +204,12 @@ impl LinkView {
             | Event::JobEnded(_)
             | Event::Traffic { .. } => Vec::new(),
         }
+    }
+
+    /// What is armed, as the screens of the unit are called.
+    fn armed_text(&self, scope: ArmScope) -> String {
+        let family = self.identity().map(|identity| family::of(identity.family));
+        family.map_or_else(|| scope.to_string(), |family| family::armed_text(family, scope))
     }
 
     fn connected(&mut self, identity: Identity) -> Vec<Effect> {

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use brushwork_link::PortInfo;
+use brushwork_script::language::Language;
 use egui::{
     Align, Button, Frame, Key, Layout, Margin, RichText, ScrollArea, Stroke, TextStyle, Ui, WidgetText, vec2,
 };
@@ -11,6 +12,7 @@ use crate::command::{Command, Commands};
 use crate::family::{self, Family};
 use crate::focus::{self, Region, region_ui};
 use crate::language::{said, word};
+use crate::mcl::Editor;
 use crate::messages::ButtonMessage;
 use crate::model::devices::{Choice, described};
 use crate::model::{Model, Screen};
@@ -43,7 +45,7 @@ pub fn start_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             });
             ui[columns - 1].with_layout(left, |ui| {
                 region_ui(ui, Region::World);
-                simulated_ui(ui, commands);
+                simulated_ui(ui, &model.mcl, commands);
             });
         });
     });
@@ -234,19 +236,19 @@ fn files_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 }
 
 /// One controller of each family, with a picture of the axis that it drives.
-fn simulated_ui(ui: &mut Ui, commands: &mut Commands) {
+fn simulated_ui(ui: &mut Ui, editor: &Editor, commands: &mut Commands) {
     heading_ui(ui, &word("start", "A simulated controller, in this program"));
     ui.weak(word(
         "start",
         "It answers like the real one, with motors, supply and faults of its own. Nothing can break.",
     ));
     for family in family::all() {
-        card_ui(ui, *family, commands);
+        card_ui(ui, *family, editor, commands);
     }
     ui.weak(word("start", "Other models are chosen at the left, beside Simulated."));
 }
 
-fn card_ui(ui: &mut Ui, family: &dyn Family, commands: &mut Commands) {
+fn card_ui(ui: &mut Ui, family: &dyn Family, editor: &Editor, commands: &mut Commands) {
     let Some((key, name)) = family.simulated().first().copied() else { return };
     ui.add_space(6.0);
     let outline = Stroke::new(1.0, Palette::of(ui).line);
@@ -261,7 +263,38 @@ fn card_ui(ui: &mut Ui, family: &dyn Family, commands: &mut Commands) {
                 }
             });
         });
+        if let Some(language) = family.simulated_program() {
+            programs_ui(ui, key, &programs(editor, language), commands);
+        }
         sketch_ui(ui, &Sketch::sound(family.simulated_axis()));
+    });
+}
+
+/// Programs that are offered for a simulated unit to run.
+const PROGRAMS_SHOWN: usize = 3;
+
+/// The open programs of a language, title and path, as far as they are in files that a target can name.
+fn programs(editor: &Editor, language: Language) -> Vec<(String, String)> {
+    let of_language = editor.documents().iter().filter(|document| document.language() == language);
+    let paths = of_language
+        .filter_map(|document| Some((document.title(), document.path.as_ref()?.to_str()?.to_owned())));
+    paths.filter(|(_, path)| !path.contains([',', '?', '&'])).take(PROGRAMS_SHOWN).collect()
+}
+
+/// A simulated unit may begin with a program of the user's.
+fn programs_ui(ui: &mut Ui, key: &str, programs: &[(String, String)], commands: &mut Commands) {
+    if programs.is_empty() {
+        ui.weak(word("start", "It runs the program through which this window drives it. A program of yours that is open here, from a file, can be run in its place."));
+        return;
+    }
+    ui.horizontal_wrapped(|ui| {
+        for (title, path) in programs {
+            let button = ui.button(said(&ButtonMessage::Run { program: title.clone() }));
+            let hint = word("start", "Opens a simulated board that runs this file, as it was saved");
+            if button.on_hover_text(hint).clicked() {
+                commands.push(Command::ConnectTo(format!("sim:{key},program={path}")));
+            }
+        }
     });
 }
 

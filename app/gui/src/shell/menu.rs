@@ -43,14 +43,14 @@ fn items_ui(ui: &mut Ui, menu: Menu, model: &Model, commands: &mut Commands) {
 fn item_ui(ui: &mut Ui, action: &Action, model: &Model) -> Response {
     let ready = (action.ready)(model);
     let is_on = action.is_on.is_some_and(|is_on| is_on(model));
-    let title = action.said();
+    let title = action.said(model);
     let button = Button::selectable(is_on, &title).shortcut_text(action.keys_text(ui.ctx()));
     let response = ui.add_enabled(ready.is_ok(), button);
     response.widget_info(|| match action.is_on {
         Some(_) => WidgetInfo::selected(Role::MenuItemCheckBox, ready.is_ok(), is_on, &title),
         None => WidgetInfo::labeled(Role::MenuItem, ready.is_ok(), &title),
     });
-    let reported = ready.err().unwrap_or(action.help.into());
+    let reported = ready.err().unwrap_or_else(|| action.help(model).into());
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_description(&*reported));
     response.on_hover_text(&*reported).on_disabled_hover_text(&*reported)
 }

@@ -66,7 +66,11 @@ fn run(row: &Row, model: &mut Model, commands: &mut Commands) {
 /// Every action, then the other open devices and the recent connections.
 fn rows(ctx: &Context, model: &Model) -> Vec<Row> {
     let of_action = |action: &actions::Action| Row {
-        name: format!("{}: {}", word("menu", action.place.menu.title()), action.said().trim_end_matches('…')),
+        name: format!(
+            "{}: {}",
+            word("menu", action.place.menu.title()),
+            action.said(model).trim_end_matches('…')
+        ),
         keys: action.keys_text(ctx),
         ready: (action.ready)(model),
         command: (action.command)(model),

@@ -22,10 +22,11 @@ use crate::support::bench::Bench;
 /// The themes of messages that the shell shows.
 const THEMES: [&str; 2] = ["ShellMessage", "BarMarkMessage"];
 /// Members of other themes that it shows.
-const MEMBERS: [&str; 5] = [
+const MEMBERS: [&str; 6] = [
     "ButtonMessage.ConnectTo",
     "ButtonMessage.Copies",
     "ButtonMessage.Open",
+    "ButtonMessage.Run",
     "ButtonMessage.StopAll",
     "PanelMessage.Toolbar",
 ];

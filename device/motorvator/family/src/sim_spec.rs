@@ -1,16 +1,20 @@
 //! What simulated board to make: the text behind `sim:motorvator-3`, and the arguments of `brushwork sim`.
 //!
-//! `motorvator-3,started=yes,baud=9600,preset=NAME,seed=N`; `?` and `&` may stand for the commas. A board is at the addresses 1 and 2, one for
-//! each half, whichever are asked for by `address=N`.
+//! `motorvator-3,program=FILE,started=yes,baud=9600,preset=NAME,seed=N`; `?` and `&` may stand for the commas. A board is at the addresses 1
+//! and 2, one for each half, whichever are asked for by `address=N`.
 
+use brushwork_link::bounded;
 use brushwork_motorvator_client::Half;
 use brushwork_motorvator_sim::{DrivenMotorvator, Motorvator};
 use brushwork_motorvator_wire::BITS_PER_SECOND;
 use brushwork_motorvator_wire::host::LIBRARY;
 use brushwork_plant::ParamsError;
 use brushwork_plant::presets::{self, presets};
+use brushwork_script::diagnostic::Severity;
 use brushwork_script::mecc::compile;
 use brushwork_script::program::Program;
+use brushwork_script::text::{Lines, Place, decoded};
+use std::path::{Path, PathBuf};
 
 /// The name of the model.
 pub const MODEL: &str = "motorvator-3";
@@ -23,6 +27,8 @@ pub const RATES_BPS: [u32; 8] = [1_200, 2_400, 4_800, 9_600, 19_200, 38_400, 57_
 pub struct MotorvatorSpec {
     /// Which half a command is for, where one is named.
     pub half: Option<Half>,
+    /// The MeccCode file of its program; the host library if none is named.
+    pub program: Option<PathBuf>,
     /// Whether its program runs at once, as if somebody had started it; else it waits for `G`.
     pub is_started: bool,
     /// The rate of its line.
@@ -35,7 +41,7 @@ pub struct MotorvatorSpec {
 
 impl Default for MotorvatorSpec {
     fn default() -> Self {
-        Self { half: None, is_started: true, rate_bps: BITS_PER_SECOND, preset: None, seed: 1 }
+        Self { half: None, program: None, is_started: true, rate_bps: BITS_PER_SECOND, preset: None, seed: 1 }
     }
 }
 
@@ -70,6 +76,8 @@ impl MotorvatorSpec {
                 })?;
                 self.half = self.half.or(Some(half));
             }
+            "program" if value.is_empty() => return Err("program= lacks the name of its file".to_owned()),
+            "program" => self.program = Some(PathBuf::from(value)),
             "started" => self.is_started = is_yes(key, value)?,
             "baud" => {
                 self.rate_bps = value.parse().ok().and_then(rate).ok_or_else(|| {
@@ -85,6 +93,14 @@ impl MotorvatorSpec {
             _ => return Err(no_option(key)),
         }
         Ok(())
+    }
+
+    /// What it has in its memory: the program of its file, or the host library.
+    ///
+    /// # Errors
+    /// A clause: the file cannot be read, or what is wrong with it as `FILE:LINE:COLUMN: ...`.
+    pub fn program(&self) -> Result<Program, String> {
+        self.program.as_deref().map_or_else(|| Ok(library()), compiled)
     }
 
     /// The board with a program in its memory.
@@ -104,6 +120,25 @@ impl MotorvatorSpec {
 
 /// What its motors are unless something else is named.
 const PRESET: &str = "small-gearmotor";
+
+/// The program of a file.
+fn compiled(path: &Path) -> Result<Program, String> {
+    let file = path.display();
+    let bytes = bounded::read_file(path).map_err(|error| format!("{file} cannot be read: {error}"))?;
+    let text = decoded(bytes);
+    let compiled = compile(&text);
+    compiled.program.ok_or_else(|| {
+        let mut errors = compiled.diagnostics.iter().filter(|said| said.severity() == Severity::Error);
+        let Some(first) = errors.next() else { return format!("{file} is no program") };
+        let Place { line, column } = Lines::of(&text).place(&text, first.span.start);
+        let more = match errors.count() {
+            0 => String::new(),
+            1 => " (and 1 more error)".to_owned(),
+            count => format!(" (and {count} more errors)"),
+        };
+        format!("{file}:{line}:{column}: error {}: {}{more}", first.code, first.message.trim_end_matches('.'))
+    })
+}
 
 /// The host library, compiled.
 ///
@@ -141,8 +176,8 @@ fn is_yes(key: &str, value: &str) -> Result<bool, String> {
 
 fn no_option(given: &str) -> String {
     format!(
-        "\"{given}\" is no option of a simulated MotorVator V3. There are address=1 or 2, started=yes or no, baud=N, preset=NAME and \
-         seed=N"
+        "\"{given}\" is no option of a simulated MotorVator V3. There are address=1 or 2, program=FILE, started=yes or no, baud=N, \
+         preset=NAME and seed=N"
     )
 }
 
@@ -175,6 +210,7 @@ mod tests {
             ("motorvator-3,baud=9601", "9600"),
             ("motorvator-3,preset=none", "There are"),
             ("motorvator-3,seed=x", "whole number"),
+            ("motorvator-3,program=", "lacks the name"),
             ("motorvator-3,echo=on", "started"),
             ("motorvator-3,2", "started"),
         ] {

@@ -1,6 +1,6 @@
 //! A simulated MotorVator as a program serves it.
 
-use crate::sim_spec::{MotorvatorSpec, library};
+use crate::sim_spec::MotorvatorSpec;
 use brushwork_family::{Simulator, SimulatorError, Started};
 use brushwork_link::{FamilyRef, Stream};
 use brushwork_motorvator_client::{Half, MOTORVATOR, unit_address};
@@ -28,8 +28,9 @@ impl Simulator for MotorvatorSimulator {
 
     fn start(&self, text: &str) -> Result<Started, SimulatorError> {
         let spec = MotorvatorSpec::parse(text).map_err(SimulatorError::Spec)?;
+        let program = spec.program().map_err(SimulatorError::Spec)?;
         Ok(Started {
-            machine: Box::new(spec.board(library())?),
+            machine: Box::new(spec.board(program)?),
             addresses: Half::ALL.map(unit_address).to_vec(),
             nodes: Vec::new(),
             can_form: None,

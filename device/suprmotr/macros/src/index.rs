@@ -13,16 +13,8 @@ use brushwork_suprmotr_wire::{Absent, COMMANDS, CommandRow, Effect, Mnemonic, Pa
 use std::ops::Range;
 
 /// Macro files as an editor has them: their names end with `.macros`.
-pub static MACROS: Grammar = Grammar {
-    name: "SuprMotr macros",
-    ending: "macros",
-    index,
-    classes,
-    help,
-    completions,
-    is_reserved,
-    format,
-};
+pub static MACROS: Grammar =
+    Grammar { name: "Macro", ending: "macros", index, classes, help, completions, is_reserved, format };
 
 const WORDS: [(&str, &str, &str); 2] = [
     (
