@@ -13,6 +13,7 @@ messages! {
         EncoderNoise { motor: Motor } "{motor} encoder noise",
         ConnectedTo { pin: String } "{pin} is connected to",
         ValueOf { pin: String } "{pin} value",
+        Shows { text: String } "The display shows \"{text}\"",
         Switch { motor: Motor, kind: &'static str } "{motor} {kind} switch",
     }
 }

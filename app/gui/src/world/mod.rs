@@ -1,7 +1,7 @@
 //! The panel for a simulated controller's world: what a person could do to the machine on the bench.
 
 use brushwork_plant::world::{UnitFault, WorldAction, WorldView};
-use egui::{RichText, Ui};
+use egui::{RichText, Role, Ui, WidgetInfo};
 
 use super::command::{Command, Commands};
 use super::family::Ability;
@@ -28,6 +28,9 @@ pub fn world_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let note = "What you could do to a real machine by hand. None of it goes over the wire.";
     ui.label(RichText::new(note).small().weak());
     unit_ui(ui, view, family.lacks(Ability::EmergencyStop).is_none(), &mut actions);
+    if let Some(shown) = &view.display {
+        display_ui(ui, shown);
+    }
     supply_ui(ui, view, panel, family.lacks(Ability::LogicBattery).is_none(), &mut actions);
     if family.lacks(Ability::BridgeFaults).is_none() {
         electronics_ui(ui, view, &mut actions);
@@ -60,6 +63,15 @@ fn unit_ui(ui: &mut Ui, view: &WorldView, has_estop: bool, actions: &mut Actions
             actions.push(WorldAction::EStop { pressed: !view.estop_pressed });
         }
     });
+}
+
+/// What the board shows by itself, whatever program runs on it.
+fn display_ui(ui: &mut Ui, shown: &str) {
+    ui.separator();
+    heading_ui(ui, "Display");
+    let spoken = WorldMessage::Shows { text: shown.to_owned() }.to_string();
+    let response = ui.label(RichText::new(shown).monospace().size(30.0));
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
 }
 
 /// Faults of the controller's own electronics.

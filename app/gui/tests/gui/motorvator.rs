@@ -8,13 +8,14 @@ use brushwork_family::Simulator as _;
 use brushwork_gui::motorvator::Motorvator;
 use brushwork_gui::parts::SimulatedWorld;
 use brushwork_link::Failure;
+use brushwork_link::settings::SettingValue;
 use brushwork_motorvator::MotorvatorSimulator;
 use brushwork_motorvator::sim_spec::{MotorvatorSpec, library};
-use brushwork_motorvator_client::MotorvatorDriver;
+use brushwork_motorvator_client::{MotorvatorDriver, STEPPER_KEYS};
 use brushwork_motorvator_sim::DrivenMotorvator;
 use brushwork_plant::machine::Machine as _;
 use brushwork_plant::server::Pace;
-use brushwork_plant::world::{WorldAction, WorldView};
+use brushwork_plant::world::{PinSignal, WorldAction, WorldView};
 use brushwork_script::debug::{Request, View, Wanted};
 use brushwork_script::language::Language;
 use brushwork_script::program::Program;
@@ -80,6 +81,19 @@ impl SimulatedWorld for BoardWorld {
     fn set_pace(&self, _: Pace) {}
 }
 
+/// A window on such a board whose world it reaches.
+fn with_world(folder: &tempfile::TempDir) -> Bench {
+    let spec = MotorvatorSpec::parse("motorvator-3,seed=0").expect("it is a board");
+    let board = spec.board(library()).expect("the preset is sound");
+    let world =
+        |line| Some(Arc::new(BoardWorld { line, script: Mutex::default() }) as Arc<dyn SimulatedWorld>);
+    let family = (&MotorvatorDriver as _, &Motorvator as _);
+    let mut bench = Bench::with_world(folder, family, board, "sim:motorvator-3", world);
+    bench.app().open("sim:motorvator-3");
+    bench.pass_ms(3000);
+    bench
+}
+
 const COUNTING: &str = "Declare Word rounds
 Begin Program
 SetMotor 1, \"F\", 60
@@ -97,15 +111,7 @@ fn a_program_runs_on_the_simulated_board_and_stands_where_it_is_looked_into() {
         LIMIT,
         || {
             let folder = tempfile::tempdir().expect("a temporary folder can be made");
-            let spec = MotorvatorSpec::parse("motorvator-3,seed=0").expect("it is a board");
-            let board = spec.board(library()).expect("the preset is sound");
-            let world = |line| {
-                Some(Arc::new(BoardWorld { line, script: Mutex::default() }) as Arc<dyn SimulatedWorld>)
-            };
-            let family = (&MotorvatorDriver as _, &Motorvator as _);
-            let mut bench = Bench::with_world(&folder, family, board, "sim:motorvator-3", world);
-            bench.app().open("sim:motorvator-3");
-            bench.pass_ms(3000);
+            let mut bench = with_world(&folder);
             bench.press("Program");
             bench.app().model.mcl.open_named("counting.mecc", COUNTING);
             bench.press("Debugger");
@@ -225,6 +231,14 @@ fn the_search_finds_the_smallest_waits_that_lose_no_steps() {
         assert_eq!(lost(&bench), before);
         assert_eq!(bench.line.with(|machine| machine.board().steps()[0]), 200);
         assert!(bench.sees(&found.statement(1)), "the line for a program");
+        // The settings have what was found once nothing is armed any more.
+        bench.press("Arm");
+        bench.pass_ms(6000);
+        let unit = bench.app().model.front.settings.unit().expect("its settings are there");
+        let settings = STEPPER_KEYS.map(|key| unit.confirmed(key));
+        let expected =
+            [found.least, found.most, found.hold_percent].map(|value| Some(SettingValue::Int(value.into())));
+        assert_eq!(settings, expected);
     });
 }
 
@@ -251,5 +265,99 @@ fn the_terminal_makes_triplets_and_tells_what_came_back() {
         assert!(bench.sees("host library, version 2, answer 9"));
         assert_eq!(told(&bench), [0; 4]);
         assert_eq!(bench.line.with(|machine| machine.units()), 2);
+    });
+}
+
+#[test]
+fn inputs_are_switched_on_the_simulated_board_and_analog_ones_read_and_servos_turn_when_armed() {
+    alone(
+        "motorvator::inputs_are_switched_on_the_simulated_board_and_analog_ones_read_and_servos_turn_when_armed",
+        LIMIT,
+        || {
+            let folder = tempfile::tempdir().expect("a temporary folder can be made");
+            let mut bench = with_world(&folder);
+            bench.press("Inputs");
+            bench.pass_ms(3000);
+            assert!(bench.sees("On/off input 3: off"));
+            bench.press("Switch input 3 on");
+            bench.pass_ms(3000);
+            assert!(bench.sees("On/off input 3: on") && bench.sees("Switch input 3 off"));
+            assert!(bench.sees("IN3: active") || bench.sees("changed"), "the library has heard of it");
+            // 2.5 V of 5 is 127.5 of 255.
+            let signal = PinSignal::Volts { volts: 2.5 };
+            bench.line.with(|machine| machine.apply(0, &WorldAction::SetPin { pin: 8, signal }));
+            bench.pass_ms(3000);
+            assert!(bench.sees("Analog input 5: 128") && bench.sees("Analog input 1: 0"));
+
+            bench.press("Motors");
+            bench.app().model.front.motorvator_mut().servos.wanted = [30.0, -45.0];
+            bench.pass_ms(300);
+            let servos = |bench: &Bench| bench.line.with(|machine| machine.board().servos());
+            bench.press("Turn servo 1");
+            bench.pass_ms(500);
+            assert_eq!(servos(&bench), [0, 0], "a disarmed button turns nothing");
+            bench.press("Arm");
+            bench.pass_ms(500);
+            bench.press("Turn servo 1");
+            bench.press("Turn servo 2");
+            bench.pass_ms(1000);
+            assert_eq!(servos(&bench), [30, -45]);
+            assert!(bench.sees("Servo 2 was told -45°"));
+        },
+    );
+}
+
+#[test]
+fn the_editor_speaks_of_the_language_that_is_open_and_run_and_stop_act_on_the_simulated_board() {
+    alone(
+        "motorvator::the_editor_speaks_of_the_language_that_is_open_and_run_and_stop_act_on_the_simulated_board",
+        LIMIT,
+        || {
+            let folder = tempfile::tempdir().expect("a temporary folder can be made");
+            let mut bench = with_world(&folder);
+            bench.press("Program");
+            bench.app().model.mcl.open_named("counting.mecc", COUNTING);
+            bench.pass_ms(500);
+            assert!(!bench.sees("Toolbar Download"), "nothing is downloaded to a board");
+            bench.press("Toolbar Start Script");
+            bench.pass_ms(1500);
+            assert_eq!(told(&bench), [60, 0, 0, 0], "it drives motor A");
+            bench.press("Toolbar Stop Script");
+            bench.pass_ms(3000);
+            assert_eq!(told(&bench), [0; 4], "the host library has its place");
+            bench.press("File");
+            bench.pass_ms(300);
+            assert!(bench.sees("Save MeccCode Program As…") && !bench.sees("Save MCL Program As…"));
+            bench.press("New MeccCode Program");
+            bench.pass_ms(300);
+            let title = bench.app().model.mcl.front().title();
+            assert!(title.ends_with(".mecc"), "{title}");
+        },
+    );
+}
+
+#[test]
+fn the_start_page_offers_a_board_that_runs_the_program_that_is_open() {
+    alone("motorvator::the_start_page_offers_a_board_that_runs_the_program_that_is_open", LIMIT, || {
+        let folder = tempfile::tempdir().expect("a temporary folder can be made");
+        let path = folder.path().join("counting.mecc");
+        std::fs::write(&path, COUNTING).expect("the folder is the test's");
+        let spec = MotorvatorSpec::parse("motorvator-3,seed=0").expect("it is a board");
+        let board = spec.board(library()).expect("the preset is sound");
+        let target: &str = format!("sim:motorvator-3,program={}", path.display()).leak();
+        let mut bench = Bench::new(&folder, (&MotorvatorDriver, &Motorvator), board, target);
+        bench.pass_ms(300);
+        assert!(bench.sees("A program of yours that is open here"), "what can be done is told");
+        bench.app().model.mcl.open_path(path.clone());
+        for _ in 0..50 {
+            bench.pass_ms(100);
+            std::thread::sleep(std::time::Duration::from_millis(20));
+            if bench.sees("Run counting.mecc") {
+                break;
+            }
+        }
+        bench.press("Run counting.mecc");
+        bench.pass_ms(3000);
+        assert_eq!(bench.app().model.front.target.as_deref(), Some(target));
     });
 }

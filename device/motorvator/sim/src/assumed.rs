@@ -28,6 +28,9 @@ pub const PROGRAM_NUMBER: u8 = 99;
 /// An on/off input is on below this: its switch leads to ground. Assumed.
 pub const ON_BELOW_VOLTS: f64 = 0.8;
 
+/// The voltage at which an analog input reads 255. Assumed.
+pub const ANALOG_FULL_VOLTS: f64 = 5.0;
+
 /// What `H` shows. Assumed but for the version.
 pub const HELP: &str = "MotorVator AWOS 2.32 (simulated by Brushwork)\r\nG runs the program, I and triplets give it data, H shows this\r\n";
 

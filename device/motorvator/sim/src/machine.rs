@@ -1,8 +1,9 @@
 //! The board with what it drives, as a server and the window drive it: two worlds, motors A and B in one, C and D in the other.
 
-use super::assumed::ON_BELOW_VOLTS;
+use super::assumed::{ANALOG_FULL_VOLTS, ON_BELOW_VOLTS};
 use super::rotor::{Rotor, RotorParams};
 use super::unit::Motorvator;
+use brushwork_motorvator_wire::host::characters_text;
 use brushwork_plant::ParamsError;
 use brushwork_plant::bridge::BridgeOutput;
 use brushwork_plant::machine::{Machine, StreamIndex};
@@ -13,8 +14,10 @@ use std::time::Duration;
 
 /// What the motors and the board take of each other's doing is looked at so often.
 const STEP: Duration = Duration::from_millis(1);
-/// Input pins of a world: the on/off inputs; those of the second one are not connected.
-const PINS: usize = 4;
+/// On/off inputs, which are the first input pins of each world, and the analog inputs behind them. The board has them once: what is put on
+/// a pin of one world is put on that of the other, while a switch trips by the motors of its own.
+const ON_OFF: usize = 4;
+const PINS: usize = ON_OFF + 6;
 
 /// A simulated board with four motors.
 #[derive(Clone, Debug)]
@@ -79,10 +82,20 @@ impl DrivenMotorvator {
     fn step(&mut self, to: Duration) {
         let passed = to.saturating_sub(self.board.now());
         if self.has_power {
-            for pin in 0..PINS {
-                let is_on =
-                    matches!(self.worlds[0].pin(pin), PinState::Volts(volts) if volts < ON_BELOW_VOLTS);
-                self.board.set_on_off(pin + 1, is_on);
+            for pin in 0..ON_OFF {
+                let is_low =
+                    |state: PinState| matches!(state, PinState::Volts(volts) if volts < ON_BELOW_VOLTS);
+                let [first, second] = self.worlds.each_mut().map(|world| is_low(world.pin(pin)));
+                self.board.set_on_off(pin + 1, first || second);
+            }
+            for pin in ON_OFF..PINS {
+                let volts = match self.worlds[0].pin(pin) {
+                    PinState::Volts(volts) => volts,
+                    PinState::Open | PinState::Pulse { .. } | PinState::Counts(_) => 0.0,
+                };
+                // Within a byte.
+                let reads = (volts / ANALOG_FULL_VOLTS).clamp(0.0, 1.0) * 255.0;
+                self.board.set_analog(pin - ON_OFF + 1, reads.round() as u8);
             }
             self.board.advance(to);
         } else {
@@ -144,8 +157,15 @@ impl Machine for DrivenMotorvator {
 
     /// The board has one supply and one cable: what is done to these in the first world is done to the board.
     fn apply(&mut self, unit: usize, action: &WorldAction) {
-        let Some(world) = self.worlds.get_mut(unit) else { return };
-        world.apply(action);
+        if unit >= self.worlds.len() {
+            return;
+        }
+        let is_of_both = matches!(action, WorldAction::SetPin { .. });
+        for (index, world) in self.worlds.iter_mut().enumerate() {
+            if index == unit || is_of_both {
+                world.apply(action);
+            }
+        }
         let has_power = self.worlds[0].powered();
         if has_power != self.has_power {
             self.has_power = has_power;
@@ -155,7 +175,12 @@ impl Machine for DrivenMotorvator {
 
     fn views(&self) -> Vec<WorldView> {
         let script = self.has_power.then(|| self.board.script_view());
-        let view = |world: &World| WorldView { script: script.clone(), ..world.view(self.now()) };
+        let display = self.has_power.then(|| characters_text(self.board.display()));
+        let view = |world: &World| WorldView {
+            script: script.clone(),
+            display: display.clone(),
+            ..world.view(self.now())
+        };
         self.worlds.iter().map(view).collect()
     }
 

@@ -116,6 +116,15 @@ impl Motorvator {
         })
     }
 
+    /// Angles of the two servos, in degrees from the middle with a minus for backward.
+    #[must_use]
+    pub fn servos(&self) -> [i32; 2] {
+        self.hardware.servos.map(|servo| {
+            let angle = i32::try_from(servo.angle).unwrap_or(0);
+            if servo.direction == 'B' { -angle } else { angle }
+        })
+    }
+
     /// Steps of the two steppers since power-up.
     #[must_use]
     pub fn steps(&self) -> [i64; 2] {

@@ -7,7 +7,7 @@ use brushwork_values::Motor;
 use std::time::Duration;
 
 impl World {
-    /// A snapshot; `now` is the time it is said to be from. LEDs and script are the controller's to add. Looking changes nothing, not even the noise.
+    /// A snapshot; `now` is the time it is said to be from. LEDs, script and display are the controller's to add. Looking changes nothing, not even the noise.
     pub fn view(&self, now: Duration) -> WorldView {
         let positions = self.axes.each_ref().map(|axis| axis.state().load_radians);
         let pins = (0..self.pins.signals().len())
@@ -42,6 +42,7 @@ impl World {
             detects_battery: self.detects_battery,
             board_switches: self.board_switches,
             script: None,
+            display: None,
         }
     }
 

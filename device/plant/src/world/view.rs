@@ -72,6 +72,9 @@ pub struct WorldView {
     pub board_switches: Option<BoardSwitches>,
     /// What the unit's script does; none without power.
     pub script: Option<ScriptView>,
+    /// The characters that a board with a display shows; none without one, or without power.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub display: Option<String>,
 }
 
 /// One axis at one moment.

@@ -5,6 +5,7 @@ use brushwork_link::device::{Addresses, ArmScope, Channel, Drive, DriveCommand, 
 use brushwork_motorvator_client::channels::CHANNELS;
 use brushwork_motorvator_client::{Half, MOTORVATOR, MotorvatorFacts};
 use brushwork_motorvator_wire::host::LIBRARY;
+use brushwork_script::language::Language;
 use brushwork_script::mecc::compile;
 use brushwork_script::program::Program;
 use brushwork_values::Motor;
@@ -36,6 +37,7 @@ impl Family for Motorvator {
             Screen::GeneralSettings,
             Screen::Pwm,
             Screen::Position,
+            Screen::Inputs,
             Screen::MclEditor,
             Screen::Terminal,
         ]
@@ -79,6 +81,10 @@ impl Family for Motorvator {
         vec![("motorvator-3", "MotorVator V3")]
     }
 
+    fn simulated_program(&self) -> Option<Language> {
+        Some(Language::Mecc)
+    }
+
     /// Both halves of the board.
     fn simulated_addresses(&self, _simulated: &Simulated) -> Option<Addresses> {
         Some(Addresses::Scan)
@@ -99,6 +105,13 @@ impl Family for Motorvator {
 
     fn channels(&self) -> &'static [Channel] {
         CHANNELS
+    }
+
+    fn world_pins(&self) -> &'static [&'static str] {
+        &[
+            "On/off 1", "On/off 2", "On/off 3", "On/off 4", "Analog 1", "Analog 2", "Analog 3", "Analog 4",
+            "Analog 5", "Analog 6",
+        ]
     }
 
     fn first_channels(&self, _screen: Screen) -> &'static [Channel] {

@@ -1,7 +1,8 @@
-//! What a MotorVator has of its own in the window: its steppers and its terminal.
+//! What a MotorVator has of its own in the window: its steppers, its servos and its terminal.
 
 pub mod family;
 pub mod search;
+pub mod servos;
 pub mod stepper;
 pub mod terminal;
 
@@ -10,6 +11,7 @@ use brushwork_motorvator_client::Half;
 
 use crate::family::Own;
 use crate::model::Connection;
+use servos::Servos;
 use stepper::Stepper;
 use terminal::Terminal;
 
@@ -17,6 +19,7 @@ use terminal::Terminal;
 #[derive(Debug, Default)]
 pub struct MotorvatorConnection {
     pub stepper: Stepper,
+    pub servos: Servos,
     pub terminal: Terminal,
     /// Which half of the board is selected.
     half: Option<Half>,
@@ -28,7 +31,8 @@ impl Own for MotorvatorConnection {
             self.half = Half::of(*address);
         }
         self.terminal.note(event);
-        self.stepper.take(event, self.half)
+        let is_of_servos = self.servos.take(event);
+        self.stepper.take(event, self.half) || is_of_servos
     }
 
     fn rest(&mut self) {
@@ -37,10 +41,12 @@ impl Own for MotorvatorConnection {
 
     fn forget_unit(&mut self) {
         self.stepper = Stepper::default();
+        self.servos.forget();
     }
 
     fn link_ended(&mut self) {
         self.stepper.give_up();
+        self.servos.forget();
         self.terminal.lines.link_ended();
     }
 

@@ -55,6 +55,10 @@ pub struct Stepper {
     pub trouble: Option<String>,
     sent: Sent,
     asked: u64,
+    /// The board was configured from here: what the settings say of it is to be read anew.
+    has_configured: bool,
+    /// What the fields were last filled with of what the board has.
+    followed: Option<StepperConfig>,
 }
 
 impl Default for Stepper {
@@ -70,6 +74,8 @@ impl Default for Stepper {
             trouble: None,
             sent: Sent::No,
             asked: 0,
+            has_configured: false,
+            followed: None,
         }
     }
 }
@@ -85,6 +91,23 @@ impl Stepper {
             most: byte(self.max_wait).max(least),
             hold_percent: byte(self.hold_percent).min(100),
         }
+    }
+
+    /// Whether the board was configured since this was asked last. While more orders are due, there is time.
+    pub fn take_configured(&mut self) -> bool {
+        self.is_idle() && std::mem::take(&mut self.has_configured)
+    }
+
+    /// Shows what the board has, when that was read and is not what was read before: what is typed stays otherwise.
+    pub fn follow(&mut self, on_board: Option<StepperConfig>) {
+        let Some(config) = on_board.filter(|config| self.followed != Some(*config)) else { return };
+        if !self.is_idle() || self.search.is_some() {
+            return;
+        }
+        self.followed = Some(config);
+        let StepperConfig { least, most, hold_percent } = config;
+        (self.min_wait, self.max_wait) = (least.into(), most.into());
+        self.hold_percent = hold_percent.into();
     }
 
     pub fn is_idle(&self) -> bool {
@@ -201,7 +224,11 @@ impl Stepper {
         let Phase::Working { orders, .. } = &self.phase else { return };
         match orders.first() {
             Some(Order::Move(_)) => self.sent = Sent::Moving,
-            Some(Order::Configure(_)) | None => self.done(),
+            Some(Order::Configure(_)) => {
+                self.has_configured = true;
+                self.done();
+            }
+            None => self.done(),
         }
     }
 
@@ -273,6 +300,27 @@ mod tests {
         stepper.judge(false);
         let (_, command, values) = asked(&mut stepper);
         assert_eq!((command, values), (b'C', vec![Value::Int(10), Value::Int(10), Value::Int(0)]));
+    }
+
+    #[test]
+    fn the_fields_follow_the_board_and_keep_what_is_typed() {
+        let mut stepper = Stepper::default();
+        let on_board = |least, most| Some(StepperConfig { least, most, hold_percent: 30 });
+        stepper.follow(on_board(4, 9));
+        assert_eq!(Some(stepper.config()), on_board(4, 9));
+        stepper.min_wait = 5.0;
+        stepper.follow(on_board(4, 9));
+        assert_eq!(stepper.config().least, 5, "typed since it was read");
+        stepper.configure();
+        assert!(!stepper.take_configured());
+        let (id, ..) = asked(&mut stepper);
+        answer(&mut stepper, id);
+        assert!(stepper.take_configured() && !stepper.take_configured());
+        stepper.follow(on_board(5, 9));
+        assert_eq!(Some(stepper.config()), on_board(5, 9));
+        stepper.try_next();
+        stepper.follow(on_board(60, 60));
+        assert_eq!(Some(stepper.config()), on_board(5, 9), "a trial's waits are not the user's");
     }
 
     #[test]

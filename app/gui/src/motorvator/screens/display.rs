@@ -1,5 +1,6 @@
 //! The board as it is seen: the two characters of its display, and its on/off inputs.
 
+use brushwork_link::StatusReport;
 use brushwork_motorvator_client::indicators;
 use brushwork_motorvator_wire::host::characters_text;
 use egui::{Align2, FontId, RichText, Role, Sense, Stroke, Ui, WidgetInfo, vec2};
@@ -11,6 +12,16 @@ use crate::widgets::heading::heading_ui;
 
 /// Of one character.
 const SIZE: egui::Vec2 = vec2(34.0, 48.0);
+
+/// What the library has heard of an on/off input.
+pub fn changed_text(status: Option<StatusReport>, number: u8) -> &'static str {
+    let key = ["input_1", "input_2", "input_3", "input_4"][usize::from(number) - 1];
+    match status {
+        None => "?",
+        Some(status) if status.is_active(key) => "changed",
+        Some(_) => "as at the start",
+    }
+}
 
 pub fn display_ui(ui: &mut Ui, connection: &Connection) {
     heading_ui(ui, "Display and inputs");
@@ -30,12 +41,7 @@ pub fn display_ui(ui: &mut Ui, connection: &Connection) {
         }
         ui.add_space(12.0);
         for number in 1..=4_u8 {
-            let key = ["input_1", "input_2", "input_3", "input_4"][usize::from(number) - 1];
-            let word = match status.filter(|_| shown.is_some()) {
-                None => "?",
-                Some(status) if status.is_active(key) => "changed",
-                Some(_) => "as at the start",
-            };
+            let word = changed_text(status.filter(|_| shown.is_some()), number);
             ui.vertical(|ui| {
                 ui.label(BoardMessage::Input { number }.to_string());
                 ui.label(RichText::new(word).small().weak());

@@ -1,16 +1,19 @@
-//! The screens of a MotorVator: two motors by duty, the stepper, and what the board shows; all else is shared.
+//! The screens of a MotorVator: two motors by duty and the servos, the stepper, inputs, and what the board shows; all else is shared.
 
 mod display;
+mod inputs;
+mod servos;
 mod stepper;
 mod terminal;
 
 use brushwork_link::device::{ArmScope, Channel};
 use brushwork_values::Motor;
-use egui::Ui;
+use egui::{Context, Ui};
 
 use super::Motorvator;
 use crate::command::Commands;
-use crate::model::{Connection, Model, Screen};
+use crate::family_action::Host;
+use crate::model::{Connection, ConnectionId, Model, Screen};
 use crate::screens::drive::{Output, drive_ui, motor_ui, on_release_ui, options_ui, pace_ui, sync_ui};
 use crate::screens::face::Face;
 use crate::screens::{not_connected_text, nothing_ui};
@@ -21,15 +24,19 @@ impl Face for Motorvator {
         match model.screen {
             Screen::Pwm => motors_ui(ui, model, commands),
             Screen::Position => stepper::stepper_ui(ui, model, commands),
+            Screen::Inputs => inputs::inputs_ui(ui, model, commands),
             Screen::Terminal => terminal::terminal_ui(ui, model, commands),
             Screen::DeviceStatus
             | Screen::GeneralSettings
             | Screen::Velocity
             | Screen::MclEditor
-            | Screen::Motion
-            | Screen::Inputs => return false,
+            | Screen::Motion => return false,
         }
         true
+    }
+
+    fn go_on(&self, host: &mut dyn Host, connection: ConnectionId, _ctx: &Context) {
+        stepper::look_after_stepper(host, connection);
     }
 
     fn leds_ui(&self, ui: &mut Ui, connection: &Connection) {
@@ -53,7 +60,12 @@ fn motors_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     }
     let note =
         "Open loop, in whole percent: the board measures nothing, so that the graph shows what it was told.";
-    drive_ui(ui, model, ("Motors", note, ArmScope::Pwm), commands, controls_ui);
+    let mut asked = Vec::new();
+    drive_ui(ui, model, ("Motors", note, ArmScope::Pwm), commands, |ui, model| {
+        controls_ui(ui, model);
+        asked.extend(servos::servos_ui(ui, model));
+    });
+    commands.extend(asked);
 }
 
 fn controls_ui(ui: &mut Ui, model: &mut Model) {

@@ -1,17 +1,39 @@
 //! The stepper of the half that is selected: moves, how it is configured, and the guided search for its smallest waits.
 
 use brushwork_link::device::ArmScope;
-use brushwork_motorvator_client::{Half, MotorvatorFacts};
+use brushwork_link::settings::SettingValue;
+use brushwork_motorvator_client::{Half, MOTORVATOR, MotorvatorFacts, STEPPER_KEYS};
+use brushwork_motorvator_wire::host::StepperConfig;
 use egui::{Button, Label, RichText, Role, Ui, WidgetInfo};
 
 use crate::command::Commands;
-use crate::model::Model;
+use crate::family_action::Host;
+use crate::model::{ConnectionId, Model};
 use crate::motorvator::messages::BoardMessage;
 use crate::motorvator::model::search::Stage;
 use crate::motorvator::model::stepper::{Phase, Stepper};
 use crate::screens::drive::{drive_ui, options_ui, pace_ui};
 use crate::screens::{not_connected_text, nothing_ui};
 use crate::widgets::Numeric;
+
+/// What the settings say of the stepper is read anew after it was configured here, and the fields show what was read.
+pub fn look_after_stepper(host: &mut dyn Host, id: ConnectionId) {
+    let Some(connection) = host.model().connection_mut(id) else { return };
+    if connection.family().family() != MOTORVATOR {
+        return;
+    }
+    if connection.motorvator_mut().stepper.take_configured() {
+        connection.settings.doubt();
+    }
+    let on_board = connection.settings.unit().and_then(|unit| {
+        let [least, most, hold] = STEPPER_KEYS.map(|key| match unit.confirmed(key) {
+            Some(SettingValue::Int(value)) => u8::try_from(value).ok(),
+            Some(_) | None => None,
+        });
+        Some(StepperConfig { least: least?, most: most?, hold_percent: hold? })
+    });
+    connection.motorvator_mut().stepper.follow(on_board);
+}
 
 /// Draws the screen, and has the board told what is due.
 pub fn stepper_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
@@ -123,7 +145,12 @@ fn search_ui(ui: &mut Ui, stepper: &mut Stepper, half: Half, armed: bool) {
         }
         let end = if search.is_trying() { "Give up" } else { "Close" };
         if button_ui(ui, end, "End the search", true) {
+            let has_tried = search.is_trying() && armed;
             stepper.give_up();
+            // The board has what the last trial went back with.
+            if has_tried {
+                stepper.configure();
+            }
         }
     });
 }

@@ -1,5 +1,6 @@
-//! What is read from half a board in a sweep: the state of the motors, and now and then display and inputs.
+//! What is read from half a board in a sweep: the state of the motors, and now and then the display and the inputs.
 
+use crate::controller::channels::ANALOG;
 use crate::controller::indicators::{INDICATORS, NO_LIBRARY, word_of};
 use crate::controller::speaker::Found;
 use crate::controller::unit::Board;
@@ -13,8 +14,21 @@ use brushwork_values::Motor;
 const STATE: PollItem = PollItem { id: 0, name: "state of the motors" };
 const DISPLAY: PollItem = PollItem { id: 1, name: "display and inputs" };
 
+/// Four analog inputs are told at once: those from 1 and those from 3 on are all six.
+const ANALOG_FROM: [(PollItem, u8); 2] = [
+    (PollItem { id: 2, name: "analog inputs 1 to 4" }, 1),
+    (PollItem { id: 3, name: "analog inputs 3 to 6" }, 3),
+];
+
 pub fn list() -> PollList {
-    PollList { fast: vec![STATE], slow: vec![DISPLAY], status: Some(STATE), signals: None }
+    // The display is asked for between them, as often as both together.
+    let [(low, _), (high, _)] = ANALOG_FROM;
+    PollList {
+        fast: vec![STATE],
+        slow: vec![DISPLAY, low, DISPLAY, high],
+        status: Some(STATE),
+        signals: None,
+    }
 }
 
 /// Reads one item. Where the library is not there, it is looked for instead.
@@ -28,6 +42,15 @@ pub fn read(
         if board.speaker.has_library {
             let (answer, _) = board.speaker.ask(line, &HostOrder::Display([0; 2]))?;
             board.display = answer.display().unwrap_or(board.display);
+        }
+        return Ok(None);
+    }
+    if let Some((_, first)) = ANALOG_FROM.into_iter().find(|(known, _)| *known == item) {
+        if board.speaker.has_library {
+            let (answer, span) = board.speaker.ask(line, &HostOrder::Analog(first))?;
+            for (channel, value) in ANALOG[usize::from(first) - 1..].iter().zip(answer.values) {
+                sample.set(*channel, value.into(), span.requested_at, span.replied_at);
+            }
         }
         return Ok(None);
     }
