@@ -5,6 +5,7 @@ use std::fmt::Debug;
 use brushwork_core::keep::Store;
 use brushwork_core::session::firmware::LoaderPlace;
 use brushwork_link::{ConnectTarget, Message, Request, SettingsImage};
+use brushwork_values::Value;
 
 use super::model::screen::Screen;
 use super::model::{ConnectionId, Model};
@@ -19,6 +20,10 @@ pub trait FamilyAction: Debug {
 pub trait Host {
     /// All there is to see.
     fn model(&mut self) -> &mut Model;
+
+    /// Sends a command with its values to the unit in front, as if it had been put together by hand: with a backup of the settings before one
+    /// that changes them. The answer has the number `id`.
+    fn transact(&mut self, id: u64, command: u8, values: Vec<Value>);
 
     /// Queues a request to a link; a refusal is told.
     fn request_of(&mut self, connection: ConnectionId, request: Request) -> bool;

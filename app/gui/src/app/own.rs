@@ -3,15 +3,21 @@
 use brushwork_core::keep::Store;
 use brushwork_core::session::firmware::LoaderPlace;
 use brushwork_link::{ConnectTarget, DeviceHandle, Message, Request, SettingsImage};
+use brushwork_values::Value;
 use egui::{Context, ViewportCommand};
 
 use super::App;
+use crate::command::Command;
 use crate::family_action::Host;
 use crate::model::{ConnectionId, Model, Screen};
 
 impl Host for App {
     fn model(&mut self) -> &mut Model {
         &mut self.model
+    }
+
+    fn transact(&mut self, id: u64, command: u8, values: Vec<Value>) {
+        self.apply(Command::Transact { id, command, values });
     }
 
     fn request_of(&mut self, connection: ConnectionId, request: Request) -> bool {

@@ -17,6 +17,10 @@ pub enum Tab {
     Steps,
     /// Calibration by hand, step by step.
     ByHand,
+    /// The gains of the loop that a family draws itself.
+    Gains,
+    /// To a place that is known from a switch, step by step.
+    Home,
     /// Guided tuning; it takes the room of the sliders and the graph.
     Tune,
 }
@@ -32,6 +36,8 @@ impl Tab {
             (Self::Qpps, _) => "Measure QPPS",
             (Self::Steps, _) => "Step response",
             (Self::ByHand, _) => "By hand",
+            (Self::Gains, _) => "Gains",
+            (Self::Home, _) => "Home",
             (Self::Tune, _) => "Tune",
         }
     }

@@ -45,6 +45,7 @@ pub fn drawer_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             Tab::Qpps => qpps_ui(ui, model, commands),
             Tab::ByHand => by_hand_ui(ui, model, commands),
             Tab::Steps => face::of(model.front.family()).steps_ui(ui, model, commands),
+            Tab::Gains | Tab::Home => face::of(model.front.family()).tab_ui(ui, model, tab, commands),
             Tab::Tune => {}
         }
     });

@@ -11,7 +11,7 @@ use crate::command::Commands;
 use crate::family::Family;
 use crate::family_action::Host;
 use crate::model::connection::ConnectionId;
-use crate::model::{Connection, GeneralView, Help, HelpPage, Model, Simulated};
+use crate::model::{Connection, GeneralView, Help, HelpPage, Model, Simulated, Tab};
 
 /// What a family draws itself.
 pub trait Face: Sync {
@@ -22,6 +22,9 @@ pub trait Face: Sync {
 
     /// Its assistant above the graph, where its screens have a tab for one.
     fn steps_ui(&self, _ui: &mut Ui, _model: &mut Model, _commands: &mut Commands) {}
+
+    /// A tab of its own above the graph.
+    fn tab_ui(&self, _ui: &mut Ui, _model: &mut Model, _tab: Tab, _commands: &mut Commands) {}
 
     /// What keeps the motors from running, at the head of Device Status.
     fn reasons_ui(&self, _ui: &mut Ui, _connection: &Connection, _commands: &mut Commands) {}

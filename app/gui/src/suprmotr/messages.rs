@@ -28,6 +28,22 @@ messages! {
 }
 
 messages! {
+    /// What is said of gains that were edited.
+    pub enum GainsMessage {
+        NotApplied { edits: usize } "Edited and not applied: {edits}.",
+    }
+}
+
+messages! {
+    /// What the home guide says.
+    pub enum HomeMessage {
+        Step { text: String, state: &'static str } "Home step {text}: {state}",
+        Velocity { counts_per_s: f64 } "DV {counts_per_s:.0}",
+        Refused { why: String } "Home was not found: {why}",
+    }
+}
+
+messages! {
     /// What is said of the macros of a board.
     pub enum MacrosMessage {
         Storing { stored: usize, of: usize } "Storing macros: {stored} of {of} are stored …",
@@ -43,6 +59,11 @@ messages! {
         One "1 macro",
         Many { count: usize } "{count} macros",
         Said { text: String } "Macros: {text}",
+        Stepped { place: String, command: String, counts: i64, seconds: f64 } "Simulated: {place} {command}, at {counts} counts after {seconds:.3} s",
+        SteppedOver { how: &'static str, counts: i64, seconds: f64 } "Simulated: {how} at {counts} counts after {seconds:.3} s",
+        Says { text: String } "says {text}",
+        Gives { bits: String } "outputs {bits}",
+        NotSimulated { why: String } "It cannot be simulated: {why}",
         Entry { number: u8, name: String } "{number} {name}",
     }
 }

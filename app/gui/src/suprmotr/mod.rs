@@ -1,5 +1,6 @@
 //! SuprMotr V9 in the window: its facts, the state of its screens, and the screens.
 
+mod action;
 pub mod messages;
 pub mod model;
 pub mod screens;

@@ -4,6 +4,7 @@
 use crate::support::alone::{LIMIT, alone};
 use crate::support::one::One;
 use brushwork_gui::suprmotr::SuprMotr;
+use brushwork_link::settings::SettingValue;
 use brushwork_plant::machine::{Machine as _, StreamIndex};
 use brushwork_plant::world::{PinSignal, WorldAction};
 use brushwork_suprmotr::sim_spec::SuprMotrSpec;
@@ -297,4 +298,128 @@ fn the_terminal_tells_lines_and_characters_in_words_and_moves_nothing() {
         assert_eq!(outputs(&bench), 0x0004);
         assert!(bench.sees("Channel On"));
     });
+}
+
+#[test]
+fn gains_are_bytes_beside_the_graph_and_are_written_by_a_button_alone() {
+    alone("suprmotr::gains_are_bytes_beside_the_graph_and_are_written_by_a_button_alone", LIMIT, || {
+        let folder = tempfile::tempdir().expect("a temporary folder can be made");
+        let mut bench = connected(&folder, &[]);
+        bench.press("Motion");
+        bench.press("Gains");
+        bench.pass_ms(4000);
+        assert!(bench.sees("As the unit holds them: whole numbers, gains up to 255."));
+        let edit = |bench: &mut Bench, key: &str, value: i64| {
+            let unit = bench.app().model.front.settings.unit_mut().expect("its settings are there");
+            unit.set(key, SettingValue::Int(value));
+            bench.pass_ms(500);
+        };
+        let held = |bench: &Bench| bench.line.with(|bus| bus.suprmotrs()[0].parameters().clone());
+        assert!(!can_press(&bench, "Apply gains to RAM"));
+        // More than a byte cannot be typed.
+        let field = bench.harness.get_by_label("P");
+        field.focus();
+        field.type_text("300");
+        bench.harness.step();
+        bench.harness.key_press(egui::Key::Enter);
+        bench.pass_ms(500);
+        let wanted = bench.app().model.front.settings.unit().and_then(|unit| unit.wanted("loop.p"));
+        assert!(matches!(wanted, Some(SettingValue::Int(..=255))), "{wanted:?}");
+        edit(&mut bench, "loop.p", 90);
+        edit(&mut bench, "loop.i", 3);
+        assert!(bench.sees("Edited and not applied: 2."));
+        assert_eq!((held(&bench).proportional, held(&bench).integral), (75, 0), "nothing is written yet");
+        edit(&mut bench, "loop.integral_limit", 0);
+        assert!(bench.sees("DI does nothing while DL is 0."));
+        edit(&mut bench, "loop.integral_limit", 100);
+        bench.press("Apply gains to RAM");
+        bench.pass_ms(6000);
+        assert_eq!((held(&bench).proportional, held(&bench).integral), (90, 3));
+        assert!(bench.sees("As the unit holds them"));
+        assert_eq!(bench.line.with(|bus| bus.suprmotrs()[0].eeprom_writes()), 0);
+    });
+}
+
+#[test]
+fn the_home_guide_of_the_manual_makes_the_edge_of_the_limit_switch_zero_and_a_stop_leaves_all_as_it_was() {
+    alone(
+        "suprmotr::the_home_guide_of_the_manual_makes_the_edge_of_the_limit_switch_zero_and_a_stop_leaves_all_as_it_was",
+        LIMIT,
+        || {
+            let folder = tempfile::tempdir().expect("a temporary folder can be made");
+            let mut bench = connected(&folder, &[]);
+            bench.press("Motion");
+            bench.press("Home");
+            bench.pass_ms(4000);
+            assert!(!can_press(&bench, "Find home"), "disarmed");
+            let velocity = |bench: &Bench| bench.line.with(|bus| bus.suprmotrs()[0].parameters().velocity);
+            let position = |bench: &Bench| bench.line.with(|bus| bus.suprmotrs()[0].position());
+            for is_stopped in [true, false] {
+                bench.press("Arm");
+                bench.pass_ms(1000);
+                bench.press("Find home");
+                bench.pass_ms(2500);
+                assert!(bench.sees("Home step FE1: to the negative limit switch: runs"));
+                assert_eq!(velocity(&bench), 10_000);
+                assert!(position(&bench) < -1_000, "it moves");
+                if is_stopped {
+                    bench.press("Stop All");
+                    bench.pass_ms(3000);
+                    assert!(bench.sees("Stopped: nothing was made 0"));
+                    let stood = position(&bench);
+                    bench.pass_ms(1000);
+                    assert!((position(&bench) - stood).abs() < 30 && stood < -1_000, "{stood}");
+                    assert_eq!(velocity(&bench), 20_000, "the user's again");
+                    continue;
+                }
+                for _ in 0..120 {
+                    if bench.sees("Home: this place is 0.") {
+                        break;
+                    }
+                    bench.pass_ms(500);
+                }
+                assert!(bench.sees("Home: this place is 0."));
+                assert!(position(&bench).abs() < 60, "{}", position(&bench));
+                assert_eq!(velocity(&bench), 20_000);
+                assert!(
+                    !bench.app().model.front.link.arming.is_armed_for(brushwork_link::ArmScope::Position)
+                );
+            }
+        },
+    );
+}
+
+#[test]
+fn a_macro_is_stepped_through_on_a_simulated_board_of_the_window_and_nothing_is_sent() {
+    alone(
+        "suprmotr::a_macro_is_stepped_through_on_a_simulated_board_of_the_window_and_nothing_is_sent",
+        LIMIT,
+        || {
+            let folder = tempfile::tempdir().expect("a temporary folder can be made");
+            let mut bench = connected(&folder, &[]);
+            bench.press("Macros");
+            bench.app().model.mcl.open_named("slide.macros", "macro go = 3\n    MA 500, WS 50\n    CN 1\n");
+            bench.pass_ms(500);
+            let halted = |bench: &mut Bench| bench.app().model.mcl.front().run.halted_at;
+            bench.press("Step through the macro in the simulator");
+            bench.pass_ms(200);
+            assert!(bench.sees("Simulated: go MA"));
+            assert_eq!(halted(&mut bench), Some(1));
+            for command in ["Simulated: go WS", "Simulated: go CN"] {
+                bench.press("Step through the macro in the simulator");
+                bench.pass_ms(200);
+                let (told, _) = bench.app().model.front.suprmotr().board.steps().expect("it goes on");
+                assert!(told.starts_with(command), "{told}");
+            }
+            assert_eq!(halted(&mut bench), Some(2));
+            bench.press("Step through the macro in the simulator");
+            bench.pass_ms(200);
+            assert!(bench.sees("Simulated: ended") && bench.sees("outputs 0000000000000001"));
+            assert_eq!(halted(&mut bench), None);
+            assert_eq!((outputs(&bench), bench.line.with(|bus| bus.suprmotrs()[0].position())), (0, 0));
+            bench.press("End the simulated steps");
+            bench.pass_ms(200);
+            assert!(!bench.sees("Simulated:"));
+        },
+    );
 }

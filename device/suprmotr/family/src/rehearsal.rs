@@ -3,7 +3,8 @@
 use brushwork_plant::ParamsError;
 use brushwork_suprmotr_macros::Macro;
 use brushwork_suprmotr_sim::{Step, SuprMotr, SuprMotrConfig};
-use brushwork_suprmotr_wire::{EncodeError, ErrorCode, Selection};
+use brushwork_suprmotr_wire::{Address, EncodeError, ErrorCode, Selection};
+use std::collections::VecDeque;
 use std::time::Duration;
 
 /// A board that has macros and runs one of them.
@@ -12,6 +13,8 @@ pub struct Rehearsal {
     unit: SuprMotr,
     begun_at: Duration,
     outputs: u16,
+    /// What has happened and was not told yet by steps.
+    pending: VecDeque<Happening>,
 }
 
 /// What is to be seen from outside, and what the board does.
@@ -86,7 +89,15 @@ impl Rehearsal {
         unit.advance(unit.now() + LOOK);
         while unit.take_output().is_some() {}
         unit.start_trace();
-        Ok(Self { begun_at: unit.now(), outputs: unit.outputs(), unit })
+        Ok(Self { begun_at: unit.now(), outputs: unit.outputs(), unit, pending: VecDeque::new() })
+    }
+
+    /// The same on a board as it comes from the factory, on the usual slide.
+    ///
+    /// # Errors
+    /// What the board does not take.
+    pub fn of(macros: &[Macro]) -> Result<Self, RehearsalError> {
+        Self::new(SuprMotrConfig::new(Address::FACTORY), macros)
     }
 
     /// Calls a macro.
@@ -106,6 +117,35 @@ impl Rehearsal {
             happened.push(Happening::Outputs(outputs));
         }
         happened
+    }
+
+    /// Goes on until the next command of a macro has begun, until all is over, or for so long.
+    pub fn step(&mut self, most: Duration) -> Vec<Happening> {
+        let end = self.elapsed() + most;
+        let mut happened = Vec::new();
+        loop {
+            while let Some(next) = self.pending.pop_front() {
+                let begins = matches!(&next, Happening::Step(step) if step.of_macro.is_some());
+                happened.push(next);
+                if begins {
+                    return happened;
+                }
+            }
+            if self.elapsed() >= end {
+                return happened;
+            }
+            let more = self.advance();
+            self.pending.extend(more);
+            if self.pending.is_empty() && self.state() != State::Running {
+                return happened;
+            }
+        }
+    }
+
+    /// Whether all has been told of a run that is over.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        self.pending.is_empty() && self.state() != State::Running
     }
 
     /// How it stands.
@@ -148,7 +188,6 @@ impl Rehearsal {
 mod tests {
     use super::*;
     use brushwork_suprmotr_macros::check;
-    use brushwork_suprmotr_wire::Address;
 
     fn rehearse(text: &str, most: Duration) -> (State, Duration, Vec<Happening>) {
         let macros = check(text).macros;
@@ -173,6 +212,34 @@ mod tests {
         assert!(happened.contains(&Happening::Said("0T0:+0000000500\r\n\u{3}".to_owned())));
         let steps = happened.iter().filter(|happening| matches!(happening, Happening::Step(_)));
         assert_eq!(steps.count(), 5, "the call and its four commands");
+    }
+
+    #[test]
+    fn steps_go_from_command_to_command_and_tell_everything_once() {
+        let macros = check("macro go\nMA 500, WS 50, CN 1, TT\n").macros;
+        let mut run = Rehearsal::of(&macros).unwrap();
+        run.start(macros[0].number);
+        let mut all = Vec::new();
+        for index in 0..4 {
+            assert!(!run.is_over());
+            let happened = run.step(Duration::from_secs(5));
+            let Some(Happening::Step(step)) = happened.last() else { panic!("{happened:?}") };
+            assert_eq!((step.of_macro, step.index), (Some(macros[0].number), index));
+            all.extend(happened);
+        }
+        let last = run.step(Duration::from_secs(5));
+        assert!(run.is_over() && run.state() == State::Ended);
+        all.extend(last);
+        let (_, _, whole) = rehearse("macro go\nMA 500, WS 50, CN 1, TT\n", Duration::from_secs(5));
+        assert_eq!(all, whole, "as without steps");
+        assert_eq!(run.step(Duration::from_secs(5)), []);
+        // A loop without a wait is left when its time is over.
+        let macros = check("macro go\nWA 60000\n").macros;
+        let mut run = Rehearsal::of(&macros).unwrap();
+        run.start(macros[0].number);
+        run.step(Duration::from_secs(1));
+        assert_eq!(run.step(Duration::from_secs(1)), []);
+        assert!(!run.is_over());
     }
 
     #[test]

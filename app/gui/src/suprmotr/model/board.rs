@@ -1,10 +1,13 @@
 //! What is done with the macros on a board and the file in front: read, stored and read back, compared, run.
 
+use std::time::Duration;
+
 use brushwork_link::device::{Event, Identity, Request};
+use brushwork_suprmotr::rehearsal::{Happening, Rehearsal, State};
 use brushwork_suprmotr::transfer::{self, Done, Step, Transfer, Trouble};
 use brushwork_suprmotr_client::is_suprmotr;
 use brushwork_suprmotr_macros::{Checked, Macro, check, written};
-use brushwork_suprmotr_wire::{Command, Line};
+use brushwork_suprmotr_wire::{Command, Line, Radix};
 
 use crate::mcl::DocId;
 use crate::suprmotr::messages::MacrosMessage;
@@ -64,7 +67,23 @@ pub struct Board {
     work: Option<Work>,
     outcome: Option<Outcome>,
     asked: u64,
+    /// A macro of the file in front, command by command on a simulated board.
+    steps: Option<Steps>,
 }
+
+/// A macro that is stepped through.
+#[derive(Debug)]
+struct Steps {
+    run: Rehearsal,
+    id: DocId,
+    revision: u64,
+    told: String,
+    /// Byte of the file at which the command stands that has just begun.
+    at: Option<usize>,
+}
+
+/// How long one step may take in the board's time: a wait for an input that never comes has no end.
+const LONGEST_STEP: Duration = Duration::from_secs(70);
 
 impl Board {
     /// The file in front, checked: anew if it has changed.
@@ -79,6 +98,75 @@ impl Board {
     /// The file as it was checked last.
     fn file(&self) -> Option<&Checked> {
         self.known.as_ref().map(|known| &known.checked)
+    }
+
+    /// Begins to step through a macro of the file in front, on a simulated board that has all of them.
+    pub fn begin_steps(&mut self, number: u8) {
+        let Some(known) = &self.known else { return };
+        match Rehearsal::of(&known.checked.macros) {
+            Ok(mut run) => {
+                run.start(number);
+                let (id, revision) = (known.id, known.revision);
+                self.steps = Some(Steps { run, id, revision, told: String::new(), at: None });
+                self.step();
+            }
+            Err(why) => {
+                let why = why.to_string();
+                self.outcome = Some(Outcome::Failed(MacrosMessage::NotSimulated { why }.to_string()));
+            }
+        }
+    }
+
+    /// Carries out the command that stands there, up to the beginning of the next one.
+    pub fn step(&mut self) {
+        let (Some(steps), Some(known)) = (&mut self.steps, &self.known) else { return };
+        let happened = steps.run.step(LONGEST_STEP);
+        let (counts, seconds) = (steps.run.unit().position(), steps.run.elapsed().as_secs_f64());
+        let mut told: Vec<String> = happened.iter().filter_map(aside).collect();
+        let begun = happened.iter().rev().find_map(|happening| match happening {
+            Happening::Step(step) => {
+                let number = step.of_macro?;
+                let found = known.checked.macros.iter().find(|known| known.number == number)?;
+                let at = found.places.get(step.index)?.start as usize;
+                Some((at, found.name.clone(), step.command.text(Radix::Decimal)))
+            }
+            Happening::Said(_) | Happening::Outputs(_) => None,
+        });
+        let now = match (begun, steps.run.state()) {
+            (Some((at, place, command)), _) => {
+                steps.at = Some(at);
+                MacrosMessage::Stepped { place, command, counts, seconds }.to_string()
+            }
+            (None, state) => {
+                steps.at = None;
+                let how = match state {
+                    State::Running => "it waits for longer than a minute",
+                    State::Ended => "ended",
+                    State::Refused(_) => "a command was refused",
+                    State::LetGo => "the motor was let go, since it lagged too far behind",
+                };
+                MacrosMessage::SteppedOver { how, counts, seconds }.to_string()
+            }
+        };
+        told.insert(0, now);
+        steps.told = told.join("; ");
+    }
+
+    /// Where the steps are: what is told, and the byte of the file; `None` where the file is another one by now.
+    pub fn steps(&self) -> Option<(&str, Option<usize>)> {
+        let (steps, known) = (self.steps.as_ref()?, self.known.as_ref()?);
+        let is_same = (known.id, known.revision) == (steps.id, steps.revision);
+        is_same.then_some((steps.told.as_str(), steps.at))
+    }
+
+    /// Whether a step is left.
+    pub fn can_step(&self) -> bool {
+        self.steps().is_some() && self.steps.as_ref().is_some_and(|steps| !steps.run.is_over())
+    }
+
+    /// Ends the steps.
+    pub fn end_steps(&mut self) {
+        self.steps = None;
     }
 
     /// Whether something is under way.
@@ -202,6 +290,20 @@ impl Board {
     }
 }
 
+/// What a simulated board says or gives besides.
+fn aside(happening: &Happening) -> Option<String> {
+    match happening {
+        Happening::Step(_) => None,
+        Happening::Said(text) => {
+            let text = text.trim_end_matches('\u{3}').trim_end().replace("\r\n", " | ");
+            Some(MacrosMessage::Says { text }.to_string())
+        }
+        Happening::Outputs(outputs) => {
+            Some(MacrosMessage::Gives { bits: format!("{outputs:016b}") }.to_string())
+        }
+    }
+}
+
 fn counted(count: usize) -> String {
     if count == 1 { MacrosMessage::One.to_string() } else { MacrosMessage::Many { count }.to_string() }
 }
@@ -235,6 +337,27 @@ fn compared(told: &[Line], file: &Checked) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_macro_is_stepped_through_command_by_command_until_it_ends() {
+        let mut board = Board::default();
+        let text = "macro a = 1\n    MA 500, WS 50\n    CN 1, TT\n";
+        board.checked(DocId(3), 1, || text.to_owned());
+        board.begin_steps(1);
+        let mut places = Vec::new();
+        while board.can_step() {
+            let (_, at) = board.steps().expect("it goes on");
+            places.push(at.map(|at| &text[at..at + 2]));
+            board.step();
+        }
+        assert_eq!(places, [Some("MA"), Some("WS"), Some("CN"), Some("TT")]);
+        let (told, at) = board.steps().expect("it stands");
+        assert!(told.starts_with("Simulated: ended at ") && told.contains("0T0:+0000000500"), "{told}");
+        assert_eq!(at, None);
+        // Another text is another program.
+        board.checked(DocId(3), 2, || text.to_owned());
+        assert!(board.steps().is_none() && !board.can_step());
+    }
 
     #[test]
     fn a_board_and_a_file_are_compared_macro_by_macro() {

@@ -159,7 +159,7 @@ impl Family for SuprMotr {
     }
 
     fn tabs(&self, screen: Screen) -> &'static [Tab] {
-        if screen == Screen::Position { &[Tab::Tune] } else { &[] }
+        if screen == Screen::Position { &[Tab::Gains, Tab::Home, Tab::Tune] } else { &[] }
     }
 
     /// One loop on the position, and none under it.

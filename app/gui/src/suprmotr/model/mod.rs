@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use brushwork_link::Failure;
 use brushwork_link::device::{Drive, DriveCommand, Event, Identity, Request};
 use brushwork_suprmotr_wire::FURTHEST_COUNTS;
 use brushwork_values::Motor;
@@ -13,10 +14,12 @@ use crate::model::setpoints::Setpoints;
 pub mod board;
 pub mod channels;
 pub mod family;
+pub mod home;
 pub mod terminal;
 
 use board::Board;
 use channels::Channels;
+use home::Home;
 use terminal::Terminal;
 
 /// The state of its screens.
@@ -30,6 +33,8 @@ pub struct SuprMotrConnection {
     pub channels: Channels,
     /// The macros on it.
     pub board: Board,
+    /// The way to its home position.
+    pub home: Home,
     pub terminal: Terminal,
 }
 
@@ -40,6 +45,7 @@ impl Default for SuprMotrConnection {
             step_counts: 500.0,
             channels: Channels::default(),
             board: Board::default(),
+            home: Home::default(),
             terminal: Terminal::default(),
         }
     }
@@ -49,7 +55,8 @@ impl Own for SuprMotrConnection {
     fn take(&mut self, event: &Event) -> bool {
         self.terminal.note(event);
         let is_of_board = self.board.take(event);
-        self.channels.take(event) || is_of_board
+        let is_of_home = self.home.take(event);
+        self.channels.take(event) || is_of_board || is_of_home
     }
 
     fn read(&mut self, identity: &Identity, now: Duration) -> Option<Request> {
@@ -62,6 +69,15 @@ impl Own for SuprMotrConnection {
 
     fn not_transacted(&mut self) {
         self.channels.not_sent();
+        self.home.not_sent();
+    }
+
+    fn refused(&mut self, id: u64, why: Failure) {
+        self.home.refused_of(id, why.to_string());
+    }
+
+    fn rest(&mut self) {
+        self.home.rest();
     }
 
     fn is_busy(&self) -> bool {
@@ -71,6 +87,7 @@ impl Own for SuprMotrConnection {
     fn forget_unit(&mut self) {
         self.board.forget();
         self.channels.forget();
+        self.home.forget();
     }
 
     fn not_sent(&mut self, id: u64) {
@@ -79,6 +96,7 @@ impl Own for SuprMotrConnection {
 
     fn link_ended(&mut self) {
         self.terminal.0.link_ended();
+        self.home.forget();
         self.board.forget();
         self.channels.forget();
     }

@@ -42,8 +42,16 @@ pub fn run_ui(ui: &mut Ui, model: &mut Model) {
             checked.macros.iter().map(|known| (known.number, known.name.clone())).collect();
         store_ui(ui, board, (is_right, is_free), &names);
         call_ui(ui, board, (is_right && is_free, is_armed), &names);
+        simulated_ui(ui, board, is_right && !names.is_empty());
     }
     state_ui(ui, board, is_linked, is_armed);
+    // The command that has just begun is marked as where a program halts.
+    let at = board.steps().and_then(|(_, at)| at);
+    let document = model.mcl.front_mut();
+    let line = at.map(|at| document.text.line_of(at));
+    if is_file {
+        document.show_halt(line);
+    }
 }
 
 fn store_ui(ui: &mut Ui, board: &mut Board, (is_right, is_free): (bool, bool), names: &[(u8, String)]) {
@@ -89,9 +97,29 @@ fn call_ui(ui: &mut Ui, board: &mut Board, (can, is_armed): (bool, bool), names:
     }
 }
 
+/// A macro command by command on a simulated board: nothing goes over the wire.
+fn simulated_ui(ui: &mut Ui, board: &mut Board, is_right: bool) {
+    let hint = "Carries out one command of the chosen macro on a simulated board of this window, and marks the next one";
+    let is_stepping = board.steps().is_some();
+    if button_ui(ui, "Step", ("Step through the macro in the simulator", hint), is_right) {
+        match is_stepping && board.can_step() {
+            true => board.step(),
+            false => board.begin_steps(board.chosen),
+        }
+    }
+    let end = (
+        "End the simulated steps",
+        "The next step begins the macro anew, on a board as it comes from the factory",
+    );
+    if is_stepping && button_ui(ui, "End", end, true) {
+        board.end_steps();
+    }
+}
+
 fn state_ui(ui: &mut Ui, board: &Board, is_linked: bool, is_armed: bool) {
     let text = match board.progress() {
         Some(progress) => progress,
+        None if board.steps().is_some() => board.steps().map(|(told, _)| told.to_owned()).unwrap_or_default(),
         None if !is_linked => "Not connected. Macros can be written and checked.".to_owned(),
         None if is_armed => "Run calls what the board has, not what stands here.".to_owned(),
         None => "Nothing here runs a macro but Run, when armed.".to_owned(),

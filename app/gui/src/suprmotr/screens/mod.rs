@@ -1,6 +1,8 @@
 //! The screens of a SuprMotr: moves to a place, by slider and by steps, inputs and outputs, macros, terminal; all else is shared.
 
 mod channels;
+mod gains;
+mod home;
 mod macros;
 mod terminal;
 
@@ -11,7 +13,7 @@ use egui::{Button, Context, Ui};
 use super::SuprMotr;
 use crate::command::Commands;
 use crate::family_action::Host;
-use crate::model::{ConnectionId, Model, Screen};
+use crate::model::{ConnectionId, Model, Screen, Tab};
 use crate::screens::drive::{Output, drive_ui, motor_ui, on_release_ui, options_ui, pace_ui};
 use crate::screens::face::Face;
 use crate::screens::{not_connected_text, nothing_ui};
@@ -38,8 +40,24 @@ impl Face for SuprMotr {
         true
     }
 
+    fn tab_ui(&self, ui: &mut Ui, model: &mut Model, tab: Tab, commands: &mut Commands) {
+        match tab {
+            Tab::Gains => gains::gains_ui(ui, model, commands),
+            Tab::Home => home::home_ui(ui, model),
+            Tab::Settings
+            | Tab::VelocityLoop
+            | Tab::Direction
+            | Tab::Generator
+            | Tab::Qpps
+            | Tab::Steps
+            | Tab::ByHand
+            | Tab::Tune => {}
+        }
+    }
+
     fn go_on(&self, host: &mut dyn Host, connection: ConnectionId, ctx: &Context) {
         macros::look_after_macros(host, connection, ctx);
+        home::look_after_home(host, connection);
     }
 }
 
