@@ -62,6 +62,9 @@ impl Excitation {
 pub struct Request<L: Law> {
     /// The loop.
     pub method: Method,
+    /// Whether PID is meant where that is [`Method::Piv`] and the controller has no velocity loop under its position loop.
+    #[serde(default)]
+    pub or_pid: bool,
     /// How the motor is identified.
     #[serde(default)]
     pub identification: Identification,
@@ -89,6 +92,7 @@ impl<L: Law> Default for Request<L> {
     fn default() -> Self {
         Self {
             method: Method::Velocity,
+            or_pid: false,
             identification: Identification::Fit,
             about_duty: MIDDLE_DUTY,
             level: 50.0,

@@ -265,12 +265,13 @@ fn of_unit<L: Law>(
     request: &Request<L>,
     report: &mut Report<L>,
 ) -> Result<Request<L>, Cause> {
-    // Where all is learned from moves there is one position loop, and its integral is what a cascade would have been asked for.
-    let method =
-        if guard.facts.has_duty || request.method != Method::Piv { request.method } else { Method::Pid };
-    if method == Method::Piv && !guard.facts.has_cascade {
-        return Err(Cause::NoSuchLoop);
-    }
+    let method = match request.method {
+        Method::Piv if guard.facts.has_cascade => Method::Piv,
+        // An integral is what a cascade would have been asked for.
+        Method::Piv if request.or_pid => Method::Pid,
+        Method::Piv => return Err(Cause::NoSuchLoop),
+        Method::Velocity | Method::Pd | Method::Pid => request.method,
+    };
     let law = request.law.of_unit(&guard.setup.held);
     (report.request.law, report.request.method) = (law, method);
     Ok(Request { law, method, ..*request })

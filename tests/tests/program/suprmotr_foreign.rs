@@ -41,3 +41,25 @@ fn the_python_driver_of_a_sister_controller_drives_two_boards() {
     assert!(findings.failures().is_empty(), "{:#?}", findings.failures());
     assert_eq!(findings.findings.len(), 24, "every method was looked at");
 }
+
+#[test]
+fn a_client_written_from_the_manual_alone_gets_what_the_manual_says() {
+    if foreign::is_left_out("python") {
+        return;
+    }
+    let forms = [("full", ReportForm::Full), ("address", ReportForm::Address), ("id", ReportForm::Id)];
+    for (echo, (name, form)) in ["on", "off", "off"].into_iter().zip(forms) {
+        let folder = tempfile::tempdir().unwrap();
+        let port = folder.path().join("line");
+        let mut config = SuprMotrConfig::new(Address::FACTORY);
+        config.eeprom.parameters.has_echo = echo == "on";
+        config.reply_form = form;
+        let board = SuprMotr::new(config).unwrap();
+        let endpoint = Endpoint::Pty { link: port.clone() };
+        let server =
+            Server::spawn(SuprMotrBus::new(vec![board]), ServerOptions::default(), &endpoint).unwrap();
+        let findings = foreign::run("suprmotr_manual_check.py", &port, &[name, echo], &mut Line(server));
+        assert!(findings.failures().is_empty(), "{name}, echo {echo}: {:#?}", findings.failures());
+        assert_eq!(findings.findings.len(), 80, "{name}: everything was looked at");
+    }
+}

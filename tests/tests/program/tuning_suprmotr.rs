@@ -95,7 +95,7 @@ fn within_travel(method: Method) -> Tuning {
 
 #[test]
 fn a_slide_is_tuned_by_moves_alone_in_less_than_a_minute_and_nothing_is_left_behind() {
-    for method in [Method::Pd, Method::Pid, Method::Piv] {
+    for method in [Method::Pd, Method::Pid] {
         let mut link = connected(|_| {});
         let before = parameters(&link);
         let report = tuned(&mut link, within_travel(method), |_, _| {}).expect("the run left its report");
@@ -113,6 +113,20 @@ fn a_slide_is_tuned_by_moves_alone_in_less_than_a_minute_and_nothing_is_left_beh
         assert_eq!(unit(&link, SuprMotr::eeprom_writes), 0, "{place}");
         assert!(unit(&link, SuprMotr::is_motor_on) && unit(&link, SuprMotr::is_motion_complete), "{place}");
     }
+}
+
+#[test]
+fn a_cascade_is_refused_by_what_the_board_has_and_whoever_names_no_method_gets_its_pid() {
+    let mut link = connected(|_| {});
+    let before = parameters(&link);
+    let report = tuned(&mut link, within_travel(Method::Piv), |_, _| {}).expect("a report");
+    assert_eq!((report.verdict, report.causes.as_slice()), (Verdict::Refused, &[Cause::NoSuchLoop][..]));
+    assert_eq!(unit(&link, SuprMotr::position), 0, "nothing was moved");
+    let wanted = Tuning { or_pid: true, ..within_travel(Method::Piv) };
+    let report = tuned(&mut link, wanted, |_, _| {}).expect("a report");
+    assert_ne!(report.verdict, Verdict::Refused, "{:?}", report.causes);
+    assert_eq!(report.request.method, Method::Pid);
+    assert_eq!(parameters(&link), before);
 }
 
 #[test]

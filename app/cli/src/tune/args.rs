@@ -78,7 +78,7 @@ pub struct VelocityArgs {
 #[derive(Debug, Args)]
 pub struct PositionArgs {
     /// Form of the loop; it is identified by fit (step and relay are for the velocity loop).
-    #[arg(long, value_enum, default_value_t = MethodArg::Piv)]
+    #[arg(long, value_enum, default_value_t = MethodArg::Fit)]
     pub method: MethodArg,
     /// The axis has no end stops: it is driven at up to full duty both ways. Position limits of 0 to 0, within which it could not move, become
     /// +-2 billion.
@@ -163,9 +163,9 @@ pub enum MethodArg {
     Pd,
     /// With an integral.
     Pid,
-    /// P over the velocity loop.
+    /// P over the velocity loop, where the controller has one.
     Piv,
-    /// PIV.
+    /// PIV; PID where the controller has no velocity loop under its position loop.
     Fit,
     /// Not for positions.
     Step,

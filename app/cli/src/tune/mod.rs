@@ -59,7 +59,8 @@ pub fn run(args: &TuneArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
             if args.run.travel.is_none() && !args.turns_freely && !has_range {
                 return Exit::Usage.saying(CliTuneMessage::NoTravel);
             }
-            tune(&args.run, Wanted::of(method), out, interrupt)
+            let or_pid = args.method == MethodArg::Fit;
+            tune(&args.run, Wanted { or_pid, ..Wanted::of(method) }, out, interrupt)
         }
         TuneCommand::Replay { report, json } => replay::run(report, *json, out),
     }
@@ -69,13 +70,15 @@ pub fn run(args: &TuneArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
 #[derive(Clone, Copy)]
 struct Wanted {
     method: Method,
+    /// Whether PID will do where there is no such loop.
+    or_pid: bool,
     identification: Identification,
     about_duty: f64,
 }
 
 impl Wanted {
     fn of(method: Method) -> Self {
-        Self { method, identification: Identification::Fit, about_duty: MIDDLE_DUTY }
+        Self { method, or_pid: false, identification: Identification::Fit, about_duty: MIDDLE_DUTY }
     }
 }
 
@@ -236,6 +239,7 @@ fn request(args: &RunArgs, wanted: Wanted) -> TuneRequest {
     let (level, max_duty) = (args.level.into(), args.max_duty.into());
     let mut request = law::request(wanted.method, level, motor(args), travel, max_duty, args.max_current);
     (request.identification, request.about_duty) = (wanted.identification, wanted.about_duty);
+    request.or_pid = wanted.or_pid;
     request.guard.clear_winding = args.clear_lr;
     request.keep = args.apply || args.save;
     request

@@ -7,6 +7,7 @@ use egui::{
 
 use super::{Loop, TuneAction, Tuning, plots, result, setup};
 use crate::command::{Command, Commands};
+use crate::family::Ability;
 use crate::focus::{self, Region, region_ui};
 use crate::model::{Connection, Model};
 use crate::theme::Palette;
@@ -45,7 +46,7 @@ pub fn guide_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         let room = ui.available_rect_before_wrap();
         return part_ui(ui, room, |ui| {
             if let Some(sequence) = model.front.tune.running() {
-                plots::live_ui(ui, &sequence.live.look(), which);
+                plots::live_ui(ui, &sequence.live.look(), which, has_duty(&model.front));
             }
         });
     }
@@ -81,7 +82,7 @@ pub fn found_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Comm
             result::result_ui(ui, model, which, commands);
             let (place, _) =
                 ui.allocate_exact_size(vec2(ui.available_width(), PICTURE_HEIGHT), egui::Sense::hover());
-            part_ui(ui, place, |ui| picture_ui(ui, &mut model.front.tune, which));
+            part_ui(ui, place, |ui| picture_ui(ui, &mut model.front, which));
         });
         return;
     }
@@ -92,13 +93,18 @@ pub fn found_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Comm
             result::result_ui(ui, model, which, commands);
         });
     });
-    part_ui(ui, right.with_min_x(right.left() + 6.0), |ui| picture_ui(ui, &mut model.front.tune, which));
+    part_ui(ui, right.with_min_x(right.left() + 6.0), |ui| picture_ui(ui, &mut model.front, which));
 }
 
-fn picture_ui(ui: &mut Ui, tuning: &mut Tuning, which: Loop) {
-    let mut view = tuning.view;
-    plots::result_ui(ui, tuning.front(which), &mut view, which);
-    tuning.view = view;
+fn picture_ui(ui: &mut Ui, front: &mut Connection, which: Loop) {
+    let mut view = front.tune.view;
+    plots::result_ui(ui, front.tune.front(which), &mut view, which, has_duty(front));
+    front.tune.view = view;
+}
+
+/// Whether the controller's duty is known: what is not told has no picture.
+fn has_duty(front: &Connection) -> bool {
+    front.family().lacks(Ability::Duty).is_none()
 }
 
 fn part_ui(ui: &mut Ui, place: Rect, contents: impl FnOnce(&mut Ui)) {

@@ -25,23 +25,28 @@ const DUTY_SHARE: f32 = 0.3;
 const ROOM_FOR_DUTY: f32 = 180.0;
 
 /// The picture of a run that goes on.
-pub fn live_ui(ui: &mut Ui, trace: &Trace, which: Loop) {
+pub fn live_ui(ui: &mut Ui, trace: &Trace, which: Loop, has_duty: bool) {
     let end_s = (trace.end_s() / 3.0).ceil() * 3.0;
     record_ui(
         ui,
         trace,
-        which,
+        (which, has_duty),
         end_s.max(LIVE_S),
         "The motor is about to turn a little, to check its wiring.",
     );
 }
 
 /// The record of a run from its start to `end_s`.
-fn record_ui(ui: &mut Ui, trace: &Trace, which: Loop, end_s: f64, empty: &str) {
+fn record_ui(ui: &mut Ui, trace: &Trace, (which, has_duty): (Loop, bool), end_s: f64, empty: &str) {
     let palette = Palette::of(ui);
     let x = Axis::new("time", "s", 0.0, end_s);
     let room = ui.available_size();
-    let shares = if room.y < ROOM_FOR_DUTY { [0.6, 0.0, 0.4] } else { [0.5, 0.25, 0.25] };
+    let shares = match (has_duty, room.y < ROOM_FOR_DUTY) {
+        // A controller that takes no duty tells neither that nor a current.
+        (false, _) => [1.0, 0.0, 0.0],
+        (true, true) => [0.6, 0.0, 0.4],
+        (true, false) => [0.5, 0.25, 0.25],
+    };
     let heights = shares.map(|share: f32| (room.y - 16.0) * share);
     let mut main = match which {
         Loop::Velocity => vec![line("speed", trace.speeds(SPEED_OVER_S), palette.traces[2], Look::Solid)],
@@ -66,7 +71,7 @@ fn record_ui(ui: &mut Ui, trace: &Trace, which: Loop, end_s: f64, empty: &str) {
 }
 
 /// The picture of a result, with what chooses it.
-pub fn result_ui(ui: &mut Ui, panel: &Panel, view: &mut View, which: Loop) {
+pub fn result_ui(ui: &mut Ui, panel: &Panel, view: &mut View, which: Loop, has_duty: bool) {
     if panel.run().is_some_and(Run::is_refused) {
         ui.strong("What was seen");
     } else {
@@ -80,12 +85,12 @@ pub fn result_ui(ui: &mut Ui, panel: &Panel, view: &mut View, which: Loop) {
     };
     if let Some(seen) = &run.seen {
         let empty = "Nothing was measured: it was refused before the motor was driven.";
-        return record_ui(ui, seen, which, (1.05 * seen.end_s()).max(0.5), empty);
+        return record_ui(ui, seen, (which, has_duty), (1.05 * seen.end_s()).max(0.5), empty);
     }
     match view.kind {
-        Kind::Measured => measured_ui(ui, run, which),
-        Kind::Step => replies_ui(ui, panel, run, which, false),
-        Kind::Load => replies_ui(ui, panel, run, which, true),
+        Kind::Measured => measured_ui(ui, run, which, has_duty),
+        Kind::Step => replies_ui(ui, panel, run, (which, has_duty), false),
+        Kind::Load => replies_ui(ui, panel, run, (which, has_duty), true),
         Kind::Bode => bode_ui(ui, panel, run),
         Kind::Nyquist => nyquist_ui(ui, panel, run),
         Kind::Sensitivity => sensitivity_ui(ui, panel, run),
@@ -106,7 +111,7 @@ fn kinds_ui(ui: &mut Ui, view: &mut View) {
 
 /// What was tried on the machine, over what the model predicts for the same commands: with the gains that were tried, and with those
 /// that are considered where they are others.
-fn measured_ui(ui: &mut Ui, run: &Run, which: Loop) {
+fn measured_ui(ui: &mut Ui, run: &Run, which: Loop, has_duty: bool) {
     let palette = Palette::of(ui);
     let size = ui.available_size();
     let Some(tried) = run.tried.as_ref() else {
@@ -134,7 +139,7 @@ fn measured_ui(ui: &mut Ui, run: &Run, which: Loop) {
     let duties = shifted(duties(trace, Some(stretch)), from_s);
     duty.push(line("measured", duties, palette.traces[1], Look::Solid));
     let x = Axis::new("time", "s", 0.0, (stretch.to_s - from_s).max(0.1));
-    let [upper, lower] = heights(size.y);
+    let [upper, lower] = heights(size.y, has_duty);
     let label = ChartMessage::Measured { name }.to_string();
     chart_ui(ui, &label, (x, around(name, unit, &main)), &main, "", vec2(size.x, upper));
     let label = "Measured duty over the predicted one";
@@ -142,7 +147,7 @@ fn measured_ui(ui: &mut Ui, run: &Run, which: Loop) {
 }
 
 /// Steps or load steps on the model: the considered gains, the present ones, and earlier runs.
-fn replies_ui(ui: &mut Ui, panel: &Panel, run: &Run, which: Loop, load: bool) {
+fn replies_ui(ui: &mut Ui, panel: &Panel, run: &Run, (which, has_duty): (Loop, bool), load: bool) {
     let palette = Palette::of(ui);
     let size = ui.available_size();
     let picked = |shown: &Shown| -> Vec<Reply> {
@@ -156,7 +161,7 @@ fn replies_ui(ui: &mut Ui, panel: &Panel, run: &Run, which: Loop, load: bool) {
     }
     let x_end = main.iter().filter_map(|line| line.points.last().map(|p| p[0])).fold(0.1, f64::max);
     let x = Axis::new("time", "s", 0.0, x_end);
-    let [upper, lower] = heights(size.y);
+    let [upper, lower] = heights(size.y, has_duty);
     let name = if which == Loop::Velocity { "speed" } else { "position" };
     let label = if load {
         ChartMessage::LoadStep { name }.to_string()
@@ -270,9 +275,9 @@ fn unwrapped_phase(shown: &Shown) -> Vec<(f64, f64)> {
     phases
 }
 
-/// Heights of a picture and of the duty under it, which goes where there is no room for both.
-fn heights(height: f32) -> [f32; 2] {
-    if height < ROOM_FOR_DUTY {
+/// Heights of a picture and of the duty under it, which goes where there is no room for both, or where the controller takes none.
+fn heights(height: f32, has_duty: bool) -> [f32; 2] {
+    if height < ROOM_FOR_DUTY || !has_duty {
         return [height, 0.0];
     }
     let lower = (height * DUTY_SHARE).max(70.0);
