@@ -1,0 +1,120 @@
+//! What a run concludes: a cause that names the machine stands only on answers that came in time and currents that are clear of their noise.
+
+use super::{ExperimentGuard, retried, wait_for_rest};
+use crate::cause::Cause;
+use crate::law::Law;
+use crate::motor_monitor::{MotorMonitor, NO_CURRENT_AMPS};
+use crate::pace::{Late, Pace};
+use crate::poll::{Drive, Input, Point};
+
+/// Readings of the current that are looked at before a fault is named by it, and how far above the highest one at rest they must be:
+/// noise that reached 1 among the dozen readings at rest does not have its middle at 3.
+const DRIVEN_READINGS: usize = 6;
+const ABOVE_REST: f64 = 3.0;
+
+impl<L: Law> ExperimentGuard<'_, L> {
+    /// What a run is refused for. A cause that names the machine stands only if all answers were on time, since the bounds of the guard
+    /// and the model come from the whole run; and one that was named by the current only if that was clear of its noise.
+    pub(crate) fn concluded(&self, cause: Cause) -> Cause {
+        // Without a duty no current names anything, and places are dated.
+        if !self.options.weighs_evidence || !self.facts.has_duty {
+            return cause;
+        }
+        let took_s: Vec<f64> =
+            self.exchanges[self.stretch_from..].iter().map(|exchange| exchange.1).collect();
+        let late = self.pace.late(&took_s).or(self.kept_late).filter(|_| cause.is_of_motion());
+        // What is silent beside a crowded computer may be that computer.
+        let silent = self.pace.unsteady(&took_s).filter(|_| cause == Cause::LinkLost);
+        if let Some(late) = late.or(silent) {
+            return self.answered_late(late);
+        }
+        if cause.is_by_current() && self.is_current_unclear() { Cause::CurrentUnclear } else { cause }
+    }
+
+    pub(super) fn answered_late(&self, late: Late) -> Cause {
+        let (longest_gap_ms, at_ms) = self.milliseconds(late);
+        Cause::AnsweredLate { longest_gap_ms, at_ms }
+    }
+
+    /// A gap and when it ended, from the start of the run, ms.
+    fn milliseconds(&self, late: Late) -> (u32, u32) {
+        let ms = |seconds: f64| (1e3 * seconds).round().max(0.0) as u32;
+        (ms(late.longest_s), ms(late.at_s - self.epoch_s))
+    }
+
+    /// Does a stretch of the run, and does it again, up to a number of times, where this computer answered late meanwhile: what was seen then
+    /// says nothing. The last time figures that came of it count, and are marked. `anew` says whether nothing is known of the motor before.
+    pub(crate) fn stretch<T, R: Clone>(
+        &mut self,
+        anew: bool,
+        report: &mut R,
+        mark: impl Fn(&mut R, Cause),
+        mut work: impl FnMut(&mut Self, &mut R) -> Result<T, Cause>,
+    ) -> Result<T, Cause> {
+        if self.options.late_tries == 0 {
+            return work(self, report);
+        }
+        let (before, monitor) = (report.clone(), self.monitor.clone());
+        loop {
+            (self.pace, self.stretch_from) = (Pace::default(), self.exchanges.len());
+            let outcome = work(self, report).map_err(|cause| self.concluded(cause));
+            let late = self.pace.late_gap();
+            let is_late = match outcome {
+                Ok(_) => late.is_some(),
+                Err(cause) => matches!(cause, Cause::AnsweredLate { .. }),
+            };
+            if is_late && self.tries < self.options.late_tries {
+                self.tries += 1;
+                // What is concluded after that is held against it too: the motor may have been left in another state than a run leaves it in.
+                self.kept_late = self.kept_late.or(late).or(self.pace.longest());
+                report.clone_from(&before);
+                self.begin_again(anew, &monitor)?;
+                continue;
+            }
+            if let Some(late) = late.filter(|_| outcome.is_ok()) {
+                let (longest_gap_ms, at_ms) = self.milliseconds(late);
+                mark(report, Cause::TakenLate { longest_gap_ms, at_ms });
+                self.kept_late = Some(late);
+            }
+            return outcome;
+        }
+    }
+
+    /// Brings the motor to rest and forgets what was seen of it since a stretch began.
+    fn begin_again(&mut self, anew: bool, monitor: &MotorMonitor) -> Result<(), Cause> {
+        self.progress("This computer answered late: doing that again");
+        retried(|| self.axis.drive_duty(0))?;
+        wait_for_rest(self.axis);
+        self.monitor = monitor.clone();
+        (self.silent_since_s, self.silent_polls, self.beyond) = (None, 0, 0);
+        let now_s = self.now_s();
+        self.monitor.forget(now_s);
+        if anew {
+            self.points.clear();
+            self.drives.clear();
+            self.exchanges.clear();
+        } else {
+            self.drives.push(Drive { t: now_s, input: Input::Duty(0.0) });
+        }
+        self.next_poll = self.axis.now();
+        Ok(())
+    }
+
+    /// Whether the current of the driven motor, as last read, could be the noise of readings at rest.
+    fn is_current_unclear(&self) -> bool {
+        let driven_s = self.drives.iter().find(|drive| drive.input != Input::Duty(0.0)).map(|drive| drive.t);
+        let driven_s = driven_s.unwrap_or(f64::INFINITY);
+        let at_rest =
+            self.points.iter().take_while(|point| point.t < driven_s).filter_map(|point| point.amps);
+        let noise_amps = at_rest.map(f64::abs).fold(0.0, f64::max);
+        if noise_amps <= NO_CURRENT_AMPS {
+            return false;
+        }
+        let is_driven =
+            |point: &&Point| self.monitor.duty_at(point.t).abs() > self.monitor.start_duty.max(0.03);
+        let driven = self.points.iter().rev().filter(is_driven).filter_map(|point| point.amps);
+        let mut driven: Vec<f64> = driven.map(f64::abs).take(DRIVEN_READINGS).collect();
+        driven.sort_by(f64::total_cmp);
+        driven.get(driven.len() / 2).is_none_or(|amps| *amps <= ABOVE_REST * noise_amps)
+    }
+}
