@@ -131,6 +131,10 @@ pub trait Axis {
     fn set_travel(&mut self, _counts: (i64, i64)) -> Result<(), AxisError> {
         Ok(())
     }
+    /// How long, since this was last asked, waits and replies had to wait for a processor of this computer: no time of the line's.
+    fn stolen(&mut self) -> Duration {
+        Duration::ZERO
+    }
     /// Tells whoever waits what is going on.
     fn progress(&mut self, _text: &str) {}
 }

@@ -3,6 +3,24 @@
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
+/// Who let an answer come late.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Whose {
+    /// This computer: it came late to ask, or to read what was there.
+    #[default]
+    Computer,
+    /// The line, or the controller behind it: it was asked in time.
+    Line,
+}
+
+impl Whose {
+    #[allow(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
+    fn is_computer(&self) -> bool {
+        *self == Self::Computer
+    }
+}
+
 macro_rules! causes {
     ($($(#[$what:meta])* $cause:ident $sentence:literal;)*) => {
         /// What ended a run, or what its reader must know.
@@ -18,6 +36,9 @@ macro_rules! causes {
                 /// When in the run it ended, ms.
                 #[serde(default)]
                 at_ms: u32,
+                /// Who was late.
+                #[serde(default, skip_serializing_if = "Whose::is_computer")]
+                whose: Whose,
             },
             /// Figures were taken although answers came late.
             TakenLate {
@@ -25,6 +46,9 @@ macro_rules! causes {
                 longest_gap_ms: u32,
                 /// When in the run it ended, ms.
                 at_ms: u32,
+                /// Who was late.
+                #[serde(default, skip_serializing_if = "Whose::is_computer")]
+                whose: Whose,
             },
             /// A reading takes so long that a motor could not be switched off in time after a lost one.
             LineTooSlow {
@@ -39,8 +63,10 @@ macro_rules! causes {
             pub fn sentence(self) -> Cow<'static, str> {
                 match self {
                     $(Self::$cause => $sentence.into(),)*
-                    Self::AnsweredLate { longest_gap_ms, at_ms } => answered_late(longest_gap_ms, at_ms).into(),
-                    Self::TakenLate { longest_gap_ms, at_ms } => taken_late(longest_gap_ms, at_ms).into(),
+                    Self::AnsweredLate { longest_gap_ms, at_ms, whose } => {
+                        answered_late(longest_gap_ms, at_ms, whose).into()
+                    }
+                    Self::TakenLate { longest_gap_ms, at_ms, whose } => taken_late(longest_gap_ms, at_ms, whose).into(),
                     Self::LineTooSlow { reading_ms } => line_too_slow(reading_ms).into(),
                 }
             }
@@ -249,21 +275,32 @@ fn line_too_slow(reading_ms: u32) -> String {
     )
 }
 
-/// That it is the computer is shown by trying again with less to do; what stays then is the line's.
-fn answered_late(longest_gap_ms: u32, at_ms: u32) -> String {
-    format!(
-        "This computer answered late: {longest_gap_ms} ms between two samples {}, so the run says nothing about the machine. Try again \
-         with fewer programs running; if the gap stays, it is the line: look for lost replies, a radio or a network on the way, or an \
-         adapter that holds bytes back.",
-        at(at_ms)
-    )
+/// Who was late is told by the times at which the computer asked and read.
+fn answered_late(longest_gap_ms: u32, at_ms: u32, whose: Whose) -> String {
+    let at = at(at_ms);
+    match whose {
+        Whose::Computer => format!(
+            "This computer answered late: {longest_gap_ms} ms between two samples {at}, so the run says nothing about the machine. Try again \
+             with fewer programs running."
+        ),
+        Whose::Line => format!(
+            "Replies came late: {longest_gap_ms} ms between two samples {at}, though this computer asked in time, so the run says nothing \
+             about the machine. Look at the line for lost replies, a radio or a network on the way, or an adapter that holds bytes back."
+        ),
+    }
 }
 
 /// The mark of figures that may be worse than their intervals say.
-fn taken_late(longest_gap_ms: u32, at_ms: u32) -> String {
-    format!(
-        "These figures were taken while this computer answered late: {longest_gap_ms} ms between two samples {}. Run it again with \
-         fewer programs running before you rely on them.",
-        at(at_ms)
-    )
+fn taken_late(longest_gap_ms: u32, at_ms: u32, whose: Whose) -> String {
+    let at = at(at_ms);
+    match whose {
+        Whose::Computer => format!(
+            "These figures were taken while this computer answered late: {longest_gap_ms} ms between two samples {at}. Run it again with \
+             fewer programs running before you rely on them."
+        ),
+        Whose::Line => format!(
+            "These figures were taken while replies came late: {longest_gap_ms} ms between two samples {at}, though this computer asked in \
+             time. Run it again over a better line before you rely on them."
+        ),
+    }
 }

@@ -466,6 +466,10 @@ impl<L: Law, J: Law> Axis for Joined<'_, L, J> {
         self.axis.set_travel(counts)
     }
 
+    fn stolen(&mut self) -> Duration {
+        self.axis.stolen()
+    }
+
     fn progress(&mut self, text: &str) {
         self.axis.progress(text);
     }

@@ -4,6 +4,7 @@
 //! So the gap between two answers is kept, from the times at which they were complete, and a conclusion is held against the longest.
 
 use crate::axis::Exchange;
+use crate::cause::Whose;
 
 /// A gap that long is a late one, s: less than the 130 ms after which a driven motor is said not to have started and than the 200 ms
 /// after which the controller stops it; more than four lost replies in a row make of polls every 10 ms (67 ms on the plants of the bench).
@@ -22,6 +23,15 @@ pub(crate) struct Late {
     pub(crate) longest_s: f64,
     /// When the longest gap ended, s, on the clock of the exchanges.
     pub(crate) at_s: f64,
+    /// How much of it this computer took, s.
+    pub(crate) stolen_s: f64,
+}
+
+impl Late {
+    /// Who was late for most of it: a computer that came in time to ask and to read was not.
+    pub(crate) fn whose(&self) -> Whose {
+        if 2.0 * self.stolen_s >= self.longest_s { Whose::Computer } else { Whose::Line }
+    }
 }
 
 /// The answers of a run.
@@ -33,8 +43,12 @@ pub(crate) struct Pace {
     gaps_s: Vec<f64>,
     /// The longest gap, s, and when it ended.
     longest: Option<Late>,
-    /// Whether the polls that failed last came, but too late to be of use.
-    came_late: bool,
+    /// Time that this computer took since the last answer, and between that and the one before, s: what it took beside an answer may
+    /// have been before or after its time.
+    stolen_s: f64,
+    stolen_before_s: f64,
+    /// The same of each gap.
+    stolen_each_s: Vec<f64>,
 }
 
 impl Pace {
@@ -44,27 +58,34 @@ impl Pace {
         if let Some(last_s) = self.last_s {
             let gap_s = now_s - last_s;
             self.gaps_s.push(gap_s);
+            self.stolen_each_s.push(self.stolen_s);
             if self.longest.is_none_or(|longest| gap_s > longest.longest_s) {
-                self.longest = Some(Late { longest_s: gap_s, at_s: now_s });
+                self.longest = Some(self.gap(last_s, now_s));
             }
         }
+        self.stolen_before_s = std::mem::take(&mut self.stolen_s);
         self.last_s = Some(now_s);
-        self.came_late = false;
     }
 
-    /// An answer has come so late that it says nothing.
-    pub(crate) fn came_late(&mut self) {
-        self.came_late = true;
+    /// A gap that ends now.
+    fn gap(&self, from_s: f64, now_s: f64) -> Late {
+        let longest_s = now_s - from_s;
+        Late { longest_s, at_s: now_s, stolen_s: (self.stolen_s + self.stolen_before_s).min(longest_s) }
     }
 
-    /// Whether the answers that are missing since the last good one were late rather than lost.
-    pub(crate) fn is_coming_late(&self) -> bool {
-        self.came_late
+    /// This computer took so long of what goes on, s.
+    pub(crate) fn stole(&mut self, seconds: f64) {
+        self.stolen_s += seconds;
+    }
+
+    /// The silence since the last answer, or since `begun_s` where the run was not asking before; it ends now.
+    pub(crate) fn silence(&self, begun_s: f64, now_s: f64) -> Late {
+        self.gap(self.last_s.unwrap_or(begun_s), now_s)
     }
 
     /// The run computes: the gap that comes is its own.
     pub(crate) fn pause(&mut self) {
-        self.last_s = None;
+        (self.last_s, self.stolen_s, self.stolen_before_s) = (None, 0.0, 0.0);
     }
 
     /// The longest gap.
@@ -85,10 +106,15 @@ impl Pace {
 
     /// The longest gap or the spread, where each of the exchanges took another time.
     pub(crate) fn unsteady(&self, took_s: &[f64]) -> Option<Late> {
-        let spread_s =
-            quantile(took_s, 0.9).zip(quantile(took_s, 0.1)).map_or(0.0, |(slow, quick)| slow - quick);
+        let spread = |times_s: &[f64]| {
+            quantile(times_s, 0.9).zip(quantile(times_s, 0.1)).map_or(0.0, |(slow, quick)| slow - quick)
+        };
+        let spread_s = spread(took_s);
         let longest = self.longest.unwrap_or_default();
-        (spread_s > UNSTEADY_S).then_some(Late { longest_s: longest.longest_s.max(spread_s), ..longest })
+        let longest_s = longest.longest_s.max(spread_s);
+        // Whose the spread is, is whose it is in most of the exchanges, not in the longest gap.
+        let stolen_s = longest_s * (spread(&self.stolen_each_s) / spread_s.max(f64::MIN_POSITIVE)).min(1.0);
+        (spread_s > UNSTEADY_S).then_some(Late { longest_s, stolen_s, ..longest })
     }
 }
 
@@ -158,11 +184,33 @@ mod tests {
     }
 
     #[test]
-    fn answers_that_came_late_are_forgotten_at_the_next_good_one() {
-        let mut pace = polled(&[10; 3]);
-        pace.came_late();
-        assert!(pace.is_coming_late());
-        pace.answered(&at(300));
-        assert!(!pace.is_coming_late());
+    fn a_gap_is_whose_most_of_it_was() {
+        let late_by = |stolen_s: f64, before: bool| {
+            let mut pace = polled(&[10; 3]);
+            pace.stole(if before { stolen_s } else { 0.0 });
+            pace.answered(&at(40));
+            pace.stole(if before { 0.0 } else { stolen_s });
+            pace.answered(&at(340));
+            pace.late(&[]).expect("0.3 s are late").whose()
+        };
+        assert_eq!(late_by(0.0, false), Whose::Line);
+        assert_eq!(late_by(0.01, false), Whose::Line, "a little of it");
+        assert_eq!(late_by(0.29, false), Whose::Computer);
+        assert_eq!(late_by(0.29, true), Whose::Computer, "behind the time of the counts, with the status");
+    }
+
+    #[test]
+    fn exchanges_that_spread_are_the_computers_where_it_took_that_time() {
+        let whose = |share: f64| {
+            let (mut pace, mut took_s) = (Pace::default(), Vec::new());
+            for number in 0_u64..40 {
+                let late_s = 0.004 * (number % 5) as f64;
+                pace.stole(share * late_s);
+                pace.answered(&at(25 * number));
+                took_s.push(late_s);
+            }
+            pace.unsteady(&took_s).expect("16 ms are a spread").whose()
+        };
+        assert_eq!((whose(1.0), whose(0.0)), (Whose::Computer, Whose::Line));
     }
 }

@@ -37,6 +37,8 @@ pub enum Entry<L: Law> {
     Timeout(u32, Result<(), AxisError>),
     /// Travel given.
     Travel((i64, i64), Result<(), AxisError>),
+    /// Time that this computer took of the last calls; not noted where it took none.
+    Stolen(Duration),
     /// Registers of a loop written, under the law's own names.
     #[serde(untagged)]
     Registers(L::Note),
@@ -132,6 +134,14 @@ impl<L: Law> Axis for Recorder<'_, L> {
         let answer = self.axis.set_travel(counts);
         self.note(Entry::Travel(counts, answer.clone()));
         answer
+    }
+
+    fn stolen(&mut self) -> Duration {
+        let stolen = self.axis.stolen();
+        if !stolen.is_zero() {
+            self.note(Entry::Stolen(stolen));
+        }
+        stolen
     }
 
     fn progress(&mut self, text: &str) {
@@ -271,6 +281,13 @@ impl<L: Law> Axis for Player<L> {
             Some(Entry::Travel(was, answer)) if was == counts => answer,
             _ => self.stray(),
         }
+    }
+
+    fn stolen(&mut self) -> Duration {
+        let Some(Entry::Stolen(stolen)) = self.entries.as_slice().first() else { return Duration::ZERO };
+        let stolen = *stolen;
+        self.next();
+        stolen
     }
 }
 

@@ -18,7 +18,7 @@ pub const HELP: &str = "Exit codes:\n  \
     8  tune: gains were found, with warnings to read\n  \
     9  mcl, mecc, macro: a script or macro file has errors\n  \
     10  mcl run, mecc run: the script was stopped by a fault; macro run: a command was refused, or the motor was let go\n  \
-    11  tune: this computer answered late\n  \
+    11  tune: this computer or the line answered late\n  \
     130  ended by Ctrl-C, SIGTERM, SIGHUP or a closed pipe, after both motors were stopped\n\n\
     `brushwork sim` ends with 0 then: that is how it is ended. A command that goes to several controllers ends with the code of the\n  \
     one that came off worst, which is the first of these that there is: 130, 3, 4, 5, 1, 2, 6, 0.";
@@ -62,7 +62,7 @@ pub enum Exit {
     ScriptWrong = 9,
     /// A script was stopped by a fault.
     ScriptFaulted = 10,
-    /// This computer was too late for a tuning run.
+    /// This computer, or the line, was too late for a tuning run.
     TooLate = 11,
     /// A signal or a closed pipe ended the command, with the motors stopped.
     Interrupted = 130,

@@ -12,6 +12,9 @@ const CLEAR_DUTY: f64 = 0.25;
 /// Spread of the latency about its mean.
 const LATENCY_SPREAD: (f64, f64) = (0.8, 1.6);
 
+/// A wait that ends so much too late is the host's, as the program's link counts it.
+const LATE_WAKE: Duration = Duration::from_millis(2);
+
 /// Something that happens to the machine in mid-run.
 #[derive(Clone, Debug)]
 pub struct Event {
@@ -58,6 +61,12 @@ pub struct SimulatedLine<M> {
     pub late_reads: Option<(f64, f64)>,
     /// A host without a processor for a while: from when on and for how long, the latest first.
     pub stalls: Vec<(Duration, Duration)>,
+    /// A line that holds all bytes back for a while, so that they are given up: from when on and for how long.
+    pub held_back: Option<(Duration, Duration)>,
+    /// A line with jitter: the share of replies that are on their way for longer, and by how much at the most, s.
+    pub line_jitter: Option<(f64, f64)>,
+    /// Time that the host took since it was asked.
+    stolen: Duration,
 }
 
 /// What a line needs of a simulated unit.
@@ -91,6 +100,9 @@ impl<M: Bench> SimulatedLine<M> {
             end_stop_radians: None,
             late_reads: None,
             stalls: Vec::new(),
+            held_back: None,
+            line_jitter: None,
+            stolen: Duration::ZERO,
         }
     }
 
@@ -154,7 +166,12 @@ impl<M: Bench> SimulatedLine<M> {
 
     pub(crate) fn latency(&mut self) -> Duration {
         let mut draw = Draw(self.draw.clone());
-        let seconds = self.params.latency_s * draw.between(LATENCY_SPREAD);
+        let mut seconds = self.params.latency_s * draw.between(LATENCY_SPREAD);
+        if let Some((share, longest_s)) = self.line_jitter
+            && draw.uniform() < share
+        {
+            seconds += draw.between((0.0, longest_s));
+        }
         self.draw = draw.0;
         Duration::from_secs_f64(seconds)
     }
@@ -162,8 +179,20 @@ impl<M: Bench> SimulatedLine<M> {
     /// Lets the host go without a processor where that is due: it neither sends nor reads meanwhile.
     fn stall(&mut self) {
         if let Some((_, long)) = self.stalls.pop_if(|(at, _)| *at <= self.now) {
-            self.advance(self.now + long);
+            self.hold_up(long);
         }
+    }
+
+    /// The host does nothing for a while, and sees that on its clock where it is no matter of a timer.
+    fn hold_up(&mut self, long: Duration) {
+        self.advance(self.now + long);
+        if long >= LATE_WAKE {
+            self.stolen += long;
+        }
+    }
+
+    pub(crate) fn take_stolen(&mut self) -> Duration {
+        std::mem::take(&mut self.stolen)
     }
 
     pub(crate) fn read_late(&mut self) {
@@ -172,14 +201,15 @@ impl<M: Bench> SimulatedLine<M> {
         let mut draw = Draw(self.draw.clone());
         let late_s = if draw.uniform() < share { draw.between((0.0, longest_s)) } else { 0.0 };
         self.draw = draw.0;
-        self.advance(self.now + Duration::from_secs_f64(late_s));
+        self.hold_up(Duration::from_secs_f64(late_s));
     }
 
     pub(crate) fn is_lost(&mut self) -> bool {
         let mut draw = Draw(self.draw.clone());
         let lost = draw.uniform() < self.params.loss;
         self.draw = draw.0;
-        lost
+        let is_held = |(from, long): (Duration, Duration)| (from..from + long).contains(&self.now);
+        lost || self.held_back.is_some_and(is_held)
     }
 
     pub(crate) fn is_stopped(&self) -> bool {

@@ -84,6 +84,13 @@ impl<L: Law> ExperimentGuard<'_, L> {
         mut call: impl FnMut(&mut dyn LoopAxis<L>) -> Result<T, AxisError>,
     ) -> Result<T, Cause> {
         let result = retried(|| call(self.axis));
+        self.note_stolen();
+        if !matches!(result, Err(Cause::LinkLost)) || self.axis.sample(Want::default()).is_err() {
+            return result;
+        }
+        // The line may have been silent until now, and no longer.
+        let result = retried(|| call(self.axis));
+        self.note_stolen();
         if matches!(result, Err(Cause::LinkLost)) && self.axis.sample(Want::default()).is_ok() {
             return Err(Cause::Refused);
         }

@@ -1,7 +1,7 @@
 //! What a run concludes: a cause that names the machine stands only on answers that came in time and currents that are clear of their noise.
 
 use super::{ExperimentGuard, retried, wait_for_rest};
-use crate::cause::Cause;
+use crate::cause::{Cause, Whose};
 use crate::law::Law;
 use crate::motor_monitor::{MotorMonitor, NO_CURRENT_AMPS};
 use crate::pace::{Late, Pace};
@@ -15,7 +15,10 @@ const ABOVE_REST: f64 = 3.0;
 impl<L: Law> ExperimentGuard<'_, L> {
     /// What a run is refused for. A cause that names the machine stands only if all answers were on time, since the bounds of the guard
     /// and the model come from the whole run; and one that was named by the current only if that was clear of its noise.
-    pub(crate) fn concluded(&self, cause: Cause) -> Cause {
+    pub(crate) fn concluded(&mut self, cause: Cause) -> Cause {
+        if cause == Cause::LinkLost {
+            return self.silence_named();
+        }
         // Without a duty no current names anything, and places are dated.
         if !self.options.weighs_evidence || !self.facts.has_duty {
             return cause;
@@ -23,9 +26,7 @@ impl<L: Law> ExperimentGuard<'_, L> {
         let took_s: Vec<f64> =
             self.exchanges[self.stretch_from..].iter().map(|exchange| exchange.1).collect();
         let late = self.pace.late(&took_s).or(self.kept_late).filter(|_| cause.is_of_motion());
-        // What is silent beside a crowded computer may be that computer.
-        let silent = self.pace.unsteady(&took_s).filter(|_| cause == Cause::LinkLost);
-        if let Some(late) = late.or(silent) {
+        if let Some(late) = late {
             return self.answered_late(late);
         }
         if cause.is_by_current() && self.is_current_unclear() { Cause::CurrentUnclear } else { cause }
@@ -33,7 +34,7 @@ impl<L: Law> ExperimentGuard<'_, L> {
 
     pub(super) fn answered_late(&self, late: Late) -> Cause {
         let (longest_gap_ms, at_ms) = self.milliseconds(late);
-        Cause::AnsweredLate { longest_gap_ms, at_ms }
+        Cause::AnsweredLate { longest_gap_ms, at_ms, whose: late.whose() }
     }
 
     /// A gap and when it ended, from the start of the run, ms.
@@ -68,12 +69,16 @@ impl<L: Law> ExperimentGuard<'_, L> {
                 // What is concluded after that is held against it too: the motor may have been left in another state than a run leaves it in.
                 self.kept_late = self.kept_late.or(late).or(self.pace.longest());
                 report.clone_from(&before);
-                self.begin_again(anew, &monitor)?;
+                let whose = match &outcome {
+                    Err(Cause::AnsweredLate { whose, .. }) => *whose,
+                    Ok(_) | Err(_) => late.map_or(Whose::default(), |late| late.whose()),
+                };
+                self.begin_again(anew, &monitor, whose)?;
                 continue;
             }
             if let Some(late) = late.filter(|_| outcome.is_ok()) {
                 let (longest_gap_ms, at_ms) = self.milliseconds(late);
-                mark(report, Cause::TakenLate { longest_gap_ms, at_ms });
+                mark(report, Cause::TakenLate { longest_gap_ms, at_ms, whose: late.whose() });
                 self.kept_late = Some(late);
             }
             return outcome;
@@ -81,8 +86,11 @@ impl<L: Law> ExperimentGuard<'_, L> {
     }
 
     /// Brings the motor to rest and forgets what was seen of it since a stretch began.
-    fn begin_again(&mut self, anew: bool, monitor: &MotorMonitor) -> Result<(), Cause> {
-        self.progress("This computer answered late: doing that again");
+    fn begin_again(&mut self, anew: bool, monitor: &MotorMonitor, whose: Whose) -> Result<(), Cause> {
+        self.progress(match whose {
+            Whose::Computer => "This computer answered late: doing that again",
+            Whose::Line => "Replies came late: doing that again",
+        });
         retried(|| self.axis.drive_duty(0))?;
         wait_for_rest(self.axis);
         self.monitor = monitor.clone();

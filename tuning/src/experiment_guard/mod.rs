@@ -6,6 +6,7 @@
 mod commands;
 mod evidence;
 mod polling;
+mod silence;
 mod travel;
 mod ways_out;
 
@@ -110,6 +111,8 @@ pub struct ExperimentGuard<'a, L: Law> {
     next_poll: Duration,
     silent_since_s: Option<f64>,
     silent_polls: u32,
+    /// Whether the link was asked again after a silence, and is lost.
+    is_lost: bool,
     /// Whether the controller was found to report no duty, current or voltage.
     unreported: [bool; 3],
     turn: u8,
@@ -153,6 +156,7 @@ impl<'a, L: Law> ExperimentGuard<'a, L> {
             next_poll: now,
             silent_since_s: None,
             silent_polls: 0,
+            is_lost: false,
             unreported: [false; 3],
             turn: 0,
             turned_at_counts: 0.0,

@@ -6,7 +6,7 @@ use crate::axis::{
 };
 use crate::cause::Cause;
 use crate::law::Law;
-use crate::pace::{Late, quantile};
+use crate::pace::quantile;
 use crate::poll::{Input, Point};
 use std::time::Duration;
 
@@ -69,22 +69,19 @@ impl<L: Law> ExperimentGuard<'_, L> {
             return Err(Cause::TimeLimit);
         }
         self.turn = self.turn.wrapping_add(1);
-        let sample = match self.axis.sample(want) {
+        let sample = self.axis.sample(want);
+        self.note_stolen();
+        let sample = match sample {
             Ok(sample) => sample,
-            Err(error @ (AxisError::NoReply | AxisError::Late)) => {
-                if error == AxisError::Late {
-                    self.pace.came_late();
-                }
+            Err(AxisError::NoReply | AxisError::Late) => {
                 // Counted from the first poll without a reply: between experiments nobody asks for a while.
                 let since_s = *self.silent_since_s.get_or_insert(now_s);
                 self.silent_polls += 1;
                 let silent_s = self.now_s() - since_s;
                 let is_lost = silent_s > LINK_LOST_S && self.silent_polls >= LINK_LOST_POLLS;
                 if is_lost || self.cannot_wait(now_s) {
-                    let late = self
-                        .answered_late(Late { longest_s: silent_s, at_s: self.epoch_s + since_s + silent_s });
-                    // One long silence may be the computer's as well as the line's.
-                    return Err(if self.pace.is_coming_late() || !is_lost { late } else { Cause::LinkLost });
+                    // Whose the silence was is asked when the motor has been stopped.
+                    return Err(Cause::LinkLost);
                 }
                 return self.check_unseen().map(|()| None);
             }
@@ -211,7 +208,7 @@ impl<L: Law> ExperimentGuard<'_, L> {
 
     /// Whether the counts are near 0 where no motor could have gone to since the poll before: the controller was reset, and its gains and its
     /// time-out are those of its EEPROM.
-    fn counts_anew(&self, (before_s, counts): (f64, f64), point: &Point) -> bool {
+    pub(super) fn counts_anew(&self, (before_s, counts): (f64, f64), point: &Point) -> bool {
         let full_speed = self.monitor.full_speed;
         let reach = RESET_REACH * full_speed * (point.t - before_s) + RESET_COUNTS;
         self.setup.encoder == EncoderClass::Quadrature

@@ -78,10 +78,14 @@ impl<L: Law> ExperimentGuard<'_, L> {
         };
         self.monitor.drive(alarm_s, 0.0);
         let mut after: Vec<Point> = self.points.last().copied().into_iter().collect();
+        let mut heard = 0;
         while self.now_s() < alarm_s + DIAGNOSIS_S {
             let next = self.axis.now() + Duration::from_secs_f64(self.options.poll_s);
             match self.axis.sample(Want { current: true, ..Want::default() }) {
-                Ok(sample) => after.push(self.point_of(&sample)),
+                Ok(sample) => {
+                    after.push(self.point_of(&sample));
+                    heard += 1;
+                }
                 Err(AxisError::NoReply | AxisError::Late) => {}
                 Err(error) => return cause_of(&error),
             }
@@ -89,6 +93,7 @@ impl<L: Law> ExperimentGuard<'_, L> {
                 return cause_of(&error);
             }
         }
-        diagnose(&self.monitor, alarm_s, &after)
+        // What is not heard any more has shown nothing.
+        if heard == 0 { Cause::LinkLost } else { diagnose(&self.monitor, alarm_s, &after) }
     }
 }

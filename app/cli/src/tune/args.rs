@@ -23,7 +23,7 @@ use crate::{ConnectArgs, Replace};
     2  the command line could not be understood\n  \
     3  no controller could be reached, or the link was lost\n  \
     5  the gains are in RAM, but saving them to EEPROM did not take\n  \
-    11  this computer answered late, also where it was tried again: nothing is known of the motor; the old gains are in force\n  \
+    11  this computer or the line answered late, also where it was tried again: nothing is known of the motor; the old gains are in force\n  \
     130  ended by Ctrl-C or another signal, after both motors were stopped and the old gains put back\n\
     A replay ends with the code of the verdict in its report.")]
 pub struct TuneArgs {

@@ -1,6 +1,6 @@
 //! A refusal that teaches: what was seen, a drawing of what is likely wrong, what to do, and another try.
 
-use brushwork_tuning::cause::Cause;
+use brushwork_tuning::cause::{Cause, Whose};
 use egui::{Button, Label, RichText, Ui};
 
 use super::sketches::{Sketch, sketch_ui};
@@ -14,6 +14,17 @@ const OTHER_METHOD: [&str; 2] = [
     "Choose By fit: it needs no steady speed at two duties and no limit cycle.",
     "Or try about another duty, and allow more of it.",
 ];
+
+/// What to do where answers came late.
+fn against_lateness(whose: Whose) -> &'static [&'static str] {
+    match whose {
+        Whose::Computer => &["Close other programs that keep this computer busy, and try again."],
+        Whose::Line => &[
+            "Look at the link's figures for lost replies, and check the cable.",
+            "Try without a radio, a network or an adapter on the way.",
+        ],
+    }
+}
 
 /// What to do, in the order in which it is best tried.
 #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
@@ -34,11 +45,7 @@ fn steps(cause: Cause) -> &'static [&'static str] {
             "Look at the encoder's plug, and turn the shaft by hand: the encoder figure at the top must change.",
             "Take brakes and jams away, and move the axis off its end stop.",
         ],
-        Cause::AnsweredLate { .. } | Cause::TakenLate { .. } => &[
-            "Close other programs that keep this computer busy, and try again.",
-            "If it stays, it is the line: look at the link's figures for lost replies, check the cable, and try without a radio, a network or \
-             an adapter on the way.",
-        ],
+        Cause::AnsweredLate { whose, .. } | Cause::TakenLate { whose, .. } => against_lateness(whose),
         Cause::OnlyFree
         | Cause::NoRoomForStep
         | Cause::StepUnclear

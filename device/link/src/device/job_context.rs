@@ -38,6 +38,9 @@ pub trait JobHost: Wire {
     /// How late the line has shown itself; `None` before the first reply.
     fn lateness(&self) -> Option<Lateness>;
 
+    /// How long, since this was last asked, waits and replies had to wait for a processor of this computer.
+    fn take_stolen(&mut self) -> Duration;
+
     /// What the unit's family knows of it.
     fn facts(&self) -> Facts;
 

@@ -22,6 +22,8 @@ pub const RECOVERY: Duration = Duration::from_millis(12);
 const RECOVERY_LIMIT: Duration = Duration::from_millis(500);
 /// A wait that ends so much too late tells of a computer under load, which delays replies as well: they get that time.
 const STOLEN: Duration = Duration::from_millis(10);
+/// A wait that ends so much too late counts as this computer's where it is asked whose a delay was: a quiet one is 0.1 ms late.
+const LATE_WAKE: Duration = Duration::from_millis(2);
 /// No reply gets much more than this for that reason.
 const STOLEN_MOST: Duration = Duration::from_millis(300);
 /// Work of a controller beside which its reply still tells how late the line is: registers are read within it, a whole EEPROM is not.
@@ -53,6 +55,8 @@ pub struct Exchange {
     is_scanning: bool,
     /// Time of the present request in which this thread had no processor: no fault of the line.
     stolen: Duration,
+    /// The same of all waits since it was last asked for.
+    stolen_in_all: Duration,
     /// What the units of this line are known to answer.
     capabilities: CapabilityBook,
     /// Counts in place of the transport's own while a search is on.
@@ -78,6 +82,7 @@ impl Exchange {
             turnaround: Turnaround::default(),
             is_scanning: false,
             stolen: Duration::ZERO,
+            stolen_in_all: Duration::ZERO,
             capabilities: CapabilityBook::default(),
             latency: None,
         }
@@ -105,6 +110,20 @@ impl Exchange {
     #[must_use]
     pub fn retries(&self) -> u64 {
         self.counters.totals.retries
+    }
+
+    /// How long, since this was last asked, waits and replies had to wait for a processor.
+    pub fn take_stolen(&mut self) -> Duration {
+        std::mem::take(&mut self.stolen_in_all)
+    }
+
+    /// Takes note of a wait that was to end at `wanted`, and tells by how much it was late.
+    fn woke(&mut self, wanted: Duration) -> Duration {
+        let late = self.clock.now().saturating_sub(wanted);
+        if late >= LATE_WAKE {
+            self.stolen_in_all += late;
+        }
+        late
     }
 
     /// Lets every reply take so much longer: a computer under load, or a controller that is just starting.
@@ -264,6 +283,7 @@ impl Exchange {
             let slice = self.slice(watch, now, until);
             self.clock.rest_until(until);
             self.clock.sleep(slice);
+            self.woke(now + slice);
         }
     }
 
@@ -384,7 +404,7 @@ impl Exchange {
             let slice = self.slice(watch, now, deadline);
             self.clock.rest_until(deadline);
             let count = self.transport.read(&mut buffer, slice)?;
-            let late = self.clock.now().saturating_sub(now + slice);
+            let late = self.woke(now + slice);
             if late >= STOLEN {
                 self.stolen += late;
             }

@@ -47,6 +47,10 @@ pub trait Carrier {
     fn generation(&self) -> Generation;
     /// The stream that this link is on, as far as it is known: its index in command 145.
     fn stream(&self) -> Option<usize>;
+    /// How long, since this was last asked, waits and replies had to wait for a processor of this computer.
+    fn stolen(&mut self) -> Duration {
+        Duration::ZERO
+    }
     /// Tells whoever waits what is going on.
     fn progress(&mut self, _text: &str) {}
 }
@@ -253,6 +257,10 @@ impl<C: Carrier> Axis for PacketAxis<C> {
         let values =
             [give(INDEX, index), give(TYPE, kind), give(RATE, rate), give(TIMEOUT, i64::from(milliseconds))];
         self.carrier.transact(commands::SET_STREAM, &values).map(|_| ())
+    }
+
+    fn stolen(&mut self) -> Duration {
+        self.carrier.stolen()
     }
 
     fn progress(&mut self, text: &str) {

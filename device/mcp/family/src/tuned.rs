@@ -83,6 +83,10 @@ impl Carrier for JobCarrier<'_, '_> {
         self.stream.and_then(|stream| Stream::ALL.iter().position(|other| *other == stream))
     }
 
+    fn stolen(&mut self) -> Duration {
+        self.context.take_stolen()
+    }
+
     fn progress(&mut self, text: &str) {
         self.context.progress(None, text);
     }

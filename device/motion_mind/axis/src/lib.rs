@@ -79,6 +79,10 @@ pub trait MindCarrier {
     fn now(&mut self) -> Duration;
     /// Waits until a time.
     fn wait_until(&mut self, time: Duration) -> Result<(), AxisError>;
+    /// How long, since this was last asked, waits and replies had to wait for a processor of this computer.
+    fn stolen(&mut self) -> Duration {
+        Duration::ZERO
+    }
     /// Tells whoever waits what is going on.
     fn progress(&mut self, _text: &str) {}
 }
@@ -483,6 +487,10 @@ impl<C: MindCarrier> Axis for MindAxis<C> {
     fn set_travel(&mut self, counts: (i64, i64)) -> Result<(), AxisError> {
         self.fence.travel = Some(counts);
         Ok(())
+    }
+
+    fn stolen(&mut self) -> Duration {
+        self.carrier.stolen()
     }
 
     fn progress(&mut self, text: &str) {

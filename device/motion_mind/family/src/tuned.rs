@@ -107,6 +107,10 @@ impl MindCarrier for MindJobCarrier<'_, '_> {
         self.context.sleep(left).map_err(|error| reported(&error))
     }
 
+    fn stolen(&mut self) -> Duration {
+        self.context.take_stolen()
+    }
+
     fn progress(&mut self, text: &str) {
         self.context.progress(None, text);
     }

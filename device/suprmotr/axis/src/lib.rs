@@ -39,6 +39,10 @@ pub trait SuprMotrCarrier {
     fn now(&mut self) -> Duration;
     /// Waits until a time.
     fn wait_until(&mut self, time: Duration) -> Result<(), AxisError>;
+    /// How long, since this was last asked, waits and replies had to wait for a processor of this computer.
+    fn stolen(&mut self) -> Duration {
+        Duration::ZERO
+    }
     /// Tells whoever waits what is going on.
     fn progress(&mut self, _text: &str) {}
 }
@@ -233,6 +237,10 @@ impl<C: SuprMotrCarrier> Axis for SuprMotrAxis<C> {
 
     fn set_stream_timeout(&mut self, _: u32) -> Result<(), AxisError> {
         Err(AxisError::Refused("a time-out".into()))
+    }
+
+    fn stolen(&mut self) -> Duration {
+        self.carrier.stolen()
     }
 
     fn progress(&mut self, text: &str) {

@@ -91,6 +91,10 @@ impl SuprMotrCarrier for JobCarrier<'_, '_> {
         self.context.sleep(left).map_err(|error| reported(&error))
     }
 
+    fn stolen(&mut self) -> Duration {
+        self.context.take_stolen()
+    }
+
     fn progress(&mut self, text: &str) {
         self.context.progress(None, text);
     }

@@ -82,6 +82,10 @@ impl Carrier for SimulatedLine<Controller> {
         self.wait(time)
     }
 
+    fn stolen(&mut self) -> Duration {
+        self.take_stolen()
+    }
+
     fn generation(&self) -> Generation {
         self.unit.config().generation
     }

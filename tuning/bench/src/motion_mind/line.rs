@@ -136,6 +136,10 @@ impl MindCarrier for MindLine {
     fn wait_until(&mut self, time: Duration) -> Result<(), AxisError> {
         self.line.wait(time)
     }
+
+    fn stolen(&mut self) -> Duration {
+        self.line.take_stolen()
+    }
 }
 
 impl MindLine {

@@ -149,4 +149,8 @@ impl SuprMotrCarrier for BoardLine {
     fn wait_until(&mut self, time: Duration) -> Result<(), AxisError> {
         self.line.wait(time)
     }
+
+    fn stolen(&mut self) -> Duration {
+        self.line.take_stolen()
+    }
 }

@@ -1,9 +1,12 @@
 //! A host that stands still for 0.1 to 0.9 s in mid-run, or reads nearly every reply late: whatever it sees then is no fault of the machine, and no refusal says so.
 
-use brushwork_tuning::cause::Cause;
+use brushwork_mcp_axis::McpLaw;
+use brushwork_mcp_sim::controller::Controller;
+use brushwork_tuning::cause::{Cause, Whose};
 use brushwork_tuning::law::Law;
 use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::tune::{Method, Request, tune};
+use brushwork_tuning_bench::line::SimulatedLine;
 use brushwork_tuning_bench::mcp::population::specimen;
 use brushwork_tuning_bench::motion_mind::population::specimen as mind_specimen;
 use brushwork_tuning_bench::run::request_of;
@@ -47,9 +50,9 @@ fn assert_blames_no_machine<L: Law>(report: &Report<L>, case: &str) -> bool {
         panic!("{case}: {:?}", report.causes);
     };
     let sentence = cause.sentence();
-    assert!(
-        sentence.contains("This computer answered late") && sentence.contains(&longest_gap_ms.to_string())
-    );
+    let is_named =
+        sentence.contains("This computer answered late") && sentence.contains(&longest_gap_ms.to_string());
+    assert!(is_named, "{case}: {sentence}");
     true
 }
 
@@ -138,4 +141,99 @@ fn no_refusal_of_a_late_host_names_the_machine_of_a_motion_mind() {
     }
     println!("{refused} of {RUNS} were refused");
     assert!(refused > 0, "a run in which nothing was late enough tests nothing");
+}
+
+/// Moments at which the cable is pulled, or the line or the host stands still, ms after the unit was switched on.
+const MOMENTS_MS: [u64; 6] = [1_200, 1_700, 2_300, 3_100, 4_400, 6_900];
+/// The plants of these runs.
+const PLANT_OF_MOMENT: [usize; 6] = [0, 1, 2, 4, 5, 7];
+/// A stall that a radio or a computer with a full disk makes.
+const STALL: Duration = Duration::from_millis(300);
+/// A radio: the share of bytes that are on their way for longer, and by how much at the most, s. Some replies come after their time.
+const JITTER: (f64, f64) = (0.9, 0.007);
+/// How long after a pulled cable the motor may be driven (SAFETY.md), with the bench's own looks.
+const OFF: Duration = Duration::from_millis(260);
+
+/// What came of a run to which something happened at a moment.
+struct Struck {
+    report: Report<McpLaw>,
+    at_ms: u64,
+    case: String,
+}
+
+/// The run of each moment, without another try, on a line that `change` has changed.
+fn at_moments(mut change: impl FnMut(&mut SimulatedLine<Controller>, Duration)) -> Vec<Struck> {
+    let runs = MOMENTS_MS.into_iter().zip(PLANT_OF_MOMENT);
+    let runs = runs.map(|(at_ms, number)| {
+        let plant = specimen(31, number);
+        let mut axis = Unit::axis(&plant);
+        change(&mut axis.carrier, Duration::from_millis(at_ms));
+        let report = tune(&mut axis, &once(request_of(&plant, Method::Velocity)));
+        let case = format!("plant {number} at {at_ms} ms");
+        assert!(report.replay().as_ref() == Some(&report), "{case}: the replay differs");
+        if let Some(at) = axis.carrier.dead_at {
+            assert!(axis.carrier.truth.last_driven <= at + OFF, "{case}: it is still driven");
+        }
+        Struck { report, at_ms, case }
+    });
+    runs.collect()
+}
+
+/// A run that came to the moment at which the cable was pulled says so; another ended before, since its answers were late.
+fn assert_lost(runs: &[Struck]) {
+    let mut lost = 0;
+    for Struck { report, at_ms, case } in runs {
+        let is_before = report.seconds.1 < 1e-3 * (*at_ms as f64) - 0.5;
+        let cause = report.causes.first().copied();
+        let is_late = is_before && matches!(cause, Some(Cause::AnsweredLate { .. }));
+        assert_eq!(report.verdict, Verdict::Refused, "{case}");
+        assert!(is_late || cause == Some(Cause::LinkLost), "{case}: {:?}", report.causes);
+        lost += usize::from(cause == Some(Cause::LinkLost));
+    }
+    assert!(2 * lost >= runs.len(), "{lost} of {} runs were still going on", runs.len());
+}
+
+#[test]
+fn a_cable_pulled_on_a_crowded_host_is_a_lost_link() {
+    assert_lost(&at_moments(|line, at| (line.late_reads, line.dead_at) = (Some(CROWDED), Some(at))));
+}
+
+#[test]
+fn a_cable_pulled_on_a_line_with_jitter_is_a_lost_link() {
+    assert_lost(&at_moments(|line, at| (line.line_jitter, line.dead_at) = (Some(JITTER), Some(at))));
+}
+
+/// How many of the runs were refused; each of these for answers that came late by the fault of `whose`.
+fn refused_for_late(runs: &[Struck], whose: Whose) -> usize {
+    let refused = runs.iter().filter(|run| run.report.verdict == Verdict::Refused);
+    refused
+        .inspect(|run| {
+            let cause = run.report.causes.first();
+            let is_so = matches!(cause, Some(Cause::AnsweredLate { whose: said, .. }) if *said == whose);
+            assert!(is_so, "{}: {:?}", run.case, run.report.causes);
+        })
+        .count()
+}
+
+#[test]
+fn a_host_that_stood_still_is_told_from_a_line_that_did() {
+    let by_host = at_moments(|line, at| line.stalls = vec![(at, STALL)]);
+    let by_line = at_moments(|line, at| line.held_back = Some((at, STALL)));
+    let refused = (refused_for_late(&by_host, Whose::Computer), refused_for_late(&by_line, Whose::Line));
+    println!("{refused:?} of {} were refused", MOMENTS_MS.len());
+    assert!(
+        refused.0 > 0 && refused.1 > 0,
+        "runs in which nothing was late enough test nothing: {refused:?}"
+    );
+}
+
+#[test]
+fn a_stretch_over_a_line_that_stood_still_is_done_again_and_gives_gains() {
+    for (at_ms, number) in MOMENTS_MS.into_iter().zip(PLANT_OF_MOMENT) {
+        let plant = specimen(31, number);
+        let mut axis = Unit::axis(&plant);
+        axis.carrier.held_back = Some((Duration::from_millis(at_ms), STALL));
+        let report = tune(&mut axis, &request_of(&plant, Method::Velocity));
+        assert_ne!(report.verdict, Verdict::Refused, "plant {number} at {at_ms} ms: {:?}", report.causes);
+    }
 }

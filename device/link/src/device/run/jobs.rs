@@ -290,6 +290,10 @@ impl JobHost for Host<'_> {
         self.core.exchange.lateness()
     }
 
+    fn take_stolen(&mut self) -> Duration {
+        self.core.exchange.take_stolen()
+    }
+
     fn facts(&self) -> Facts {
         self.identity().facts.clone()
     }
