@@ -25,6 +25,7 @@ pub fn propose<L: Law>(
     design: Design,
     travel: Option<(i64, i64)>,
 ) {
+    report.free_limits = travel.filter(|_| request.guard.travel.is_none());
     let held = report.before.map_or_else(L::Held::default, |setup| setup.held);
     report.proposed = request.law.registers(&held, &design.gains, task.qpps, travel);
     report.design = Some(as_loop(task, design));

@@ -100,6 +100,9 @@ pub struct Report<L: Law> {
     pub design: Option<Design>,
     /// What the last verification measured.
     pub measured: Option<Measured>,
+    /// Position limits proposed with the gains of an axis that turns freely and had none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub free_limits: Option<(i64, i64)>,
     /// Registers proposed; none where it was refused.
     #[serde(flatten)]
     pub proposed: L::Registers,

@@ -130,6 +130,7 @@ fn blank<L: Law>(request: &Request<L>) -> Report<L> {
         law: None,
         winding: None,
         winding_unknown: None,
+        free_limits: None,
         backlash: None,
         lag: None,
         task: None,
@@ -251,7 +252,7 @@ fn design<L: LawProbe>(
             design
         }
     };
-    propose(report, request, &task, design, guard.options.travel);
+    propose(report, request, &task, design, guard.proposed_travel(task.qpps));
     if request.verify {
         guard.progress("Trying the gains on the machine");
         check_moves(guard, request, &task, report)?;

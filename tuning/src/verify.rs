@@ -161,7 +161,7 @@ fn try_until_smooth<L: Law>(
             return Ok(());
         }
         if let Some(quiet) = with_deadzone(guard, request, task, &design, &measured, report)? {
-            propose(report, request, task, quiet, guard.options.travel);
+            propose(report, request, task, quiet, guard.proposed_travel(task.qpps));
             continue;
         }
         warn_of_lowering(report);
@@ -179,13 +179,13 @@ fn try_until_smooth<L: Law>(
             } else {
                 softer(request.method, task, &design)
             };
-            propose(report, request, task, softer, guard.options.travel);
+            propose(report, request, task, softer, guard.proposed_travel(task.qpps));
         }
     }
     match smoothest {
         Some((_, design, measured)) => {
             report.measured = Some(measured);
-            propose(report, request, task, design, guard.options.travel);
+            propose(report, request, task, design, guard.proposed_travel(task.qpps));
             Ok(())
         }
         None => Err(Cause::NotVerified),
@@ -241,7 +241,7 @@ fn leave_room<L: Law>(
         let less =
             |position: Pid| Pid { p: factor * position.p, i: factor * position.i, d: factor * position.d };
         let gains = Gains { position: inner.position.map(less), ..inner };
-        propose(report, request, task, Design { gains, ..design }, guard.options.travel);
+        propose(report, request, task, Design { gains, ..design }, guard.proposed_travel(task.qpps));
     }
     Ok(Some((found.quiet / factor, found.is_doubtful)))
 }

@@ -183,7 +183,8 @@ pub fn redesign_registers<L: Law>(report: &Report<L>, level: f64) -> Option<L::R
         return Some(report.proposed);
     }
     let design = redesign(request.method, &task, request.level, &design, level)?;
-    Some(request.law.registers(&report.before?.held, &design.gains, task.qpps, request.guard.travel))
+    let travel = request.guard.travel.or(report.free_limits);
+    Some(request.law.registers(&report.before?.held, &design.gains, task.qpps, travel))
 }
 
 /// What keeps the gains of a level from being stiffer; see [`limit`].

@@ -189,6 +189,23 @@ fn a_run_that_keeps_its_gains_leaves_them_in_ram_and_the_users_time_out_in_force
     assert_eq!(timeout_after_ms, timeout_ms);
 }
 
+/// Limits of 0 to 0 hold a motor where it is. Those of an axis that turns freely stay near it: within 2 billion no slider can be set.
+#[test]
+fn an_axis_that_turns_freely_gets_position_limits_of_a_minute_at_full_speed() {
+    let mut link = connected();
+    let held = settings(&link).0;
+    assert_eq!((held.position_min_counts, held.position_max_counts), (0, 0));
+    let report = tuned(&mut link, Tuning { method: Method::Piv, keep: true, ..velocity() }, |_| {});
+    let report = report.expect("a report");
+    let position = report.proposed.first.first.position.expect("gains");
+    let minute = 60.0 * report.qpps.expect("it was measured");
+    for limit in [-f64::from(position.min), f64::from(position.max)] {
+        assert!(limit >= minute && limit <= minute + 1_000.0, "{limit} of {minute}");
+    }
+    let held = settings(&link).0;
+    assert_eq!((held.position_min_counts, held.position_max_counts), (position.min, position.max));
+}
+
 #[test]
 fn a_position_run_stays_inside_its_travel() {
     let mut link = connected();

@@ -10,6 +10,9 @@ use std::time::Duration;
 /// Time a duty takes to change its sign, as far as it counts for the stopping distance, s; and the longest that a motion is driven against.
 const TURNING_S: f64 = 0.03;
 pub(super) const LONGEST_TURN_S: f64 = 2.0;
+/// Position limits of an axis that turns freely and has none: so long at full speed to either side of where it stood, s, up to whole steps, counts.
+const FREE_REACH_S: f64 = 60.0;
+const REACH_STEP: f64 = 1_000.0;
 /// How much longer than computed a stopping distance may be.
 const STOPPING_DOUBT: f64 = 1.15;
 /// Time that a lost command costs before it is sent again, s.
@@ -30,6 +33,18 @@ impl<L: Law> ExperimentGuard<'_, L> {
         let (low, high) = self.options.travel?;
         let origin = self.origin_counts();
         Some(((low - origin) as f64, (high - origin) as f64))
+    }
+
+    /// The position limits that belong to the gains: the travel, or, where there is none and the controller's own limits leave no room, what is
+    /// near the motor. `None` leaves those that the controller has.
+    pub(crate) fn proposed_travel(&self, qpps: f64) -> Option<(i64, i64)> {
+        if self.options.travel.is_some() {
+            return self.options.travel;
+        }
+        let (low, high) = L::position_limits(&self.setup.held)?;
+        // The casts saturate.
+        let reach = ((FREE_REACH_S * qpps / REACH_STEP).ceil() * REACH_STEP) as i64;
+        (low >= high).then(|| (self.origin_counts() - reach, self.origin_counts() + reach))
     }
 
     /// Where the guard last turned a motor back, counts.

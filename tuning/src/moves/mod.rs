@@ -91,7 +91,7 @@ pub(crate) fn by_moves<L: Law>(
     guard.monitor.stopping_s = task.plant.tau_s;
     let (task, design) = design_over_rates(request.method, task, &found).ok_or(Cause::GainSteps)?;
     report.task = Some(task);
-    propose(report, request, &task, design, guard.options.travel);
+    propose(report, request, &task, design, guard.proposed_travel(task.qpps));
     if request.verify {
         guard.progress("Trying the gains on the machine");
         match check_moves(guard, request, &task, report) {
@@ -112,7 +112,7 @@ fn without_integral<L: Law>(
     report: &mut Report<L>,
 ) -> Result<(), Cause> {
     let design = design_pd(task).ok_or(Cause::NotVerified)?;
-    propose(report, request, task, design, guard.options.travel);
+    propose(report, request, task, design, guard.proposed_travel(task.qpps));
     check_moves(guard, &Request { method: Method::Pd, ..*request }, task, report)
 }
 

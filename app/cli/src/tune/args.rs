@@ -81,7 +81,7 @@ pub struct PositionArgs {
     #[arg(long, value_enum, default_value_t = MethodArg::Fit)]
     pub method: MethodArg,
     /// The axis has no end stops: it is driven at up to full duty both ways. Position limits of 0 to 0, within which it could not move, become
-    /// +-2 billion.
+    /// those of a minute at full speed to either side of where it stands.
     #[arg(long, conflicts_with = "travel")]
     pub turns_freely: bool,
     /// The rest.

@@ -14,8 +14,10 @@ use brushwork_tuning::registers::RegisterTable as _;
 
 /// P of the position loop to begin with, 2000 on the wire (MCP manual 2.4.7), which is about 2 counts/s per count.
 const FIRST_POSITION_P: f64 = 2000.0 / 1024.0;
-/// Travel of an axis without end stops (MCP manual 2.4.7).
-const NO_STOPS: f64 = 2_000_000_000.0;
+/// Travel of an axis without end stops: so long at full speed to either side, s, and so many counts at the least. The MCP manual (2.4.7) has
+/// 2 billion, within which no slider can be set and no limit ends a mistake.
+const NO_STOPS_S: f64 = 60.0;
+const NO_STOPS_COUNTS: f64 = 10_000.0;
 /// Hardly moved: what is left of the way, as a share.
 const HARDLY: f64 = 0.9;
 /// Near enough to the setpoint to go on, as a share.
@@ -62,6 +64,15 @@ fn set(registers: &mut AnyRegisters, key: &str, change: impl Fn(f64) -> f64) {
     {
         registers.set_value(field, change(value));
     }
+}
+
+/// Limits for a motor without end stops.
+fn set_no_stops(registers: &mut AnyRegisters) {
+    let qpps = AnyRegisters::fields().into_iter().find(|field| field.key == "velocity.qpps");
+    let qpps = qpps.and_then(|field| registers.value(field)).unwrap_or(0.0);
+    let reach = (NO_STOPS_S * qpps).max(NO_STOPS_COUNTS);
+    set(registers, "position.min", |_value| -reach);
+    set(registers, "position.max", |_value| reach);
 }
 
 macro_rules! change {
@@ -120,13 +131,16 @@ pub const POSITION_STEPS: [Step; 5] = [
     Step {
         title: "Speed and travel",
         text: "QPPS must be set as for the velocity loop. For simple position control P, I and D of the velocity loop are 0. Set Min \
-               and Max under Position loop with some margin before each end stop; a motor without stops gets ±2 billion. Travel \
+               and Max under Position loop with some margin before each end stop; a motor without stops gets a minute at full speed each way. Travel \
                speed is best QPPS.",
         changes: &[
             change!("Velocity P, I, D to 0", "The position loop then acts on the duty itself",
                 "velocity.p": |_value| 0.0, "velocity.i": |_value| 0.0, "velocity.d": |_value| 0.0),
-            change!("No end stops: ±2 billion", "Only for axes that turn without end",
-                "position.min": |_value| -NO_STOPS, "position.max": |_value| NO_STOPS),
+            Change {
+                label: "No end stops: a minute each way",
+                hint: "Only for axes that turn without end: what QPPS makes in a minute, to either side of 0",
+                make: set_no_stops,
+            },
         ],
     },
     Step {

@@ -107,12 +107,15 @@ fn whoever_follows_it_ends_with_an_exact_and_smooth_velocity_loop() {
 fn whoever_follows_it_ends_with_a_position_loop_that_goes_there_and_is_quiet() {
     let mut bench = bench("Position Settings");
     assert!(bench.sees_part("Min and Max leave no travel"));
-    bench.press("No end stops: ±2 billion");
+    bench.press("No end stops: a minute each way");
     bench.pass_ms(1500);
     assert!(bench.sees_part("velocity loop are not 0"));
     bench.press("Velocity P, I, D to 0");
     bench.pass_ms(1500);
-    assert!(bench.sees_part("and the travel goes from -2000000000 to 2000000000 counts"));
+    let now = held(&bench);
+    let reach = 60 * i64::from(now.qpps);
+    assert_eq!((-i64::from(now.position_min_counts), now.position_max_counts.into()), (reach, reach));
+    assert!(bench.sees_part(&format!("and the travel goes from -{reach} to {reach} counts")));
     bench.press("Travel speed to QPPS");
     bench.press("Next step");
     bench.press("Set P 2, I 0, D 0");

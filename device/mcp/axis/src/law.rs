@@ -18,8 +18,6 @@ use brushwork_tuning::setpoint::Setpoint;
 
 /// None of the firmware's law is public, so that a run finds it out.
 static FACTS: Facts = Facts { can_be_probed: true, ..CASCADE };
-/// Position limits where neither the run nor the controller has any, counts.
-const WIDE: (i32, i32) = (-2_000_000_000, 2_000_000_000);
 
 impl Law for McpLaw {
     type Held = McpHeld;
@@ -61,7 +59,6 @@ impl Law for McpLaw {
         let clamp = |counts: i64| counts.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32;
         let travel = match travel {
             Some((low, high)) => (clamp(low), clamp(high)),
-            None if before == (0, 0) => WIDE,
             None => before,
         };
         McpRegisters {

@@ -18,6 +18,9 @@ use brushwork_tuning::tune::Method;
 use brushwork_values::Motor;
 use serde::{Deserialize, Serialize};
 
+/// Position limits of a trial, counts: none to speak of.
+const WIDE: (i64, i64) = (-2_000_000_000, 2_000_000_000);
+
 /// The optima of one plant. PID is measured against the better of PD and PIV.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PacketOptima {
@@ -103,7 +106,7 @@ impl Unit for ControlLaw {
     }
 
     fn registers(law: &McpLaw, gains: &Gains, qpps: f64) -> McpRegisters {
-        law.registers(&McpHeld::default(), gains, qpps, None)
+        law.registers(&McpHeld::default(), gains, qpps, Some(WIDE))
     }
 
     fn held_qpps(registers: &McpRegisters) -> Option<f64> {
