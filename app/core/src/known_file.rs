@@ -1,10 +1,10 @@
 //! What a file is, by what stands in it and how its name ends: whoever opens or drops one does not have to say.
 
-use std::fs::File;
 use std::io::Read as _;
 use std::path::Path;
 
 use brushwork_link::bounded::{self, MOST_BYTES};
+use brushwork_link::files;
 use brushwork_link::settings::FORMAT;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
@@ -62,20 +62,20 @@ pub fn recognise(path: &Path) -> Result<KnownFile, KnownFileMessage> {
     let shown = path.display().to_string();
     let unread =
         |error: std::io::Error| KnownFileMessage::NotRead { path: shown.clone(), error: error.to_string() };
-    let found = std::fs::metadata(path).map_err(unread)?;
+    let found = files::look(path).map_err(unread)?;
     // A device or a pipe may never end.
-    if !found.is_file() {
+    if !found.is_file {
         return Err(KnownFileMessage::NoFile { path: shown });
     }
     let mut begin = Vec::new();
-    let file = File::open(path).map_err(unread)?;
+    let file = files::open(path).map_err(unread)?;
     file.take(RECORDING.len() as u64).read_to_end(&mut begin).map_err(unread)?;
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
     let is = |kind: KnownFile| kind.endings().contains(&ending.as_str());
     if begin == RECORDING || is(KnownFile::Recording) {
         return Ok(KnownFile::Recording);
     }
-    if found.len() > MOST_BYTES {
+    if found.bytes > MOST_BYTES {
         return Err(KnownFileMessage::TooLong { path: shown, mebibytes: MOST_BYTES >> 20 });
     }
     if let Some(kind) = [KnownFile::Script, KnownFile::Firmware].into_iter().find(|kind| is(*kind)) {
@@ -160,7 +160,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         for (name, is_taken) in [("a.mcl", false), ("a.json", false), ("a.bin", false), ("a.csv", true)] {
             let path = folder.path().join(name);
-            File::create(&path).unwrap().set_len(MOST_BYTES + 1).unwrap();
+            std::fs::File::create(&path).unwrap().set_len(MOST_BYTES + 1).unwrap();
             assert_eq!(recognise(&path).is_ok(), is_taken, "{name}");
         }
     }

@@ -8,8 +8,9 @@ use brushwork_core::messages::EndedMessage;
 use brushwork_link::Message;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
+use brushwork_link::clock::Instant;
 use brushwork_link::device::{ArmScope, DeviceHandle, Event, PollRate, QueuedJob, Request};
 use brushwork_plant::world::WorldAction;
 use crossbeam_channel::TryRecvError;

@@ -4,8 +4,8 @@
 //! ask for a file also have a field for its path.
 
 use std::path::PathBuf;
-use std::thread;
 
+use brushwork_link::work;
 use crossbeam_channel::{Receiver, TryRecvError, bounded};
 
 /// What kind of file is asked for.
@@ -45,13 +45,34 @@ pub enum FileAnswer {
 
 impl FileDialog {
     /// Opens the dialog.
+    #[cfg(not(target_family = "wasm"))]
     pub fn ask(action: FileAction, kind: FileKind) -> Self {
         Self::answered_by(move || desktop::choose(action, &kind))
     }
 
     /// Asks for a folder.
+    #[cfg(not(target_family = "wasm"))]
     pub fn ask_folder() -> Self {
         Self::answered_by(desktop::choose_folder)
+    }
+
+    /// Opens the browser's dialog; a file that is saved is downloaded under the name that is offered.
+    #[cfg(target_family = "wasm")]
+    pub fn ask(action: FileAction, kind: FileKind) -> Self {
+        let (sender, answer) = bounded(1);
+        match action {
+            FileAction::Open => crate::page::browser::choose(&kind.extension, sender),
+            FileAction::Save { name } => {
+                let _ = sender.send(Some(PathBuf::from(brushwork_core::keep::folder::DOWNLOADS).join(name)));
+            }
+        }
+        Self { answer }
+    }
+
+    /// A web page has no folders but the one that is downloaded.
+    #[cfg(target_family = "wasm")]
+    pub fn ask_folder() -> Self {
+        Self::answered_by(|| Some(PathBuf::from(brushwork_core::keep::folder::DOWNLOADS)))
     }
 
     fn answered_by(choose: impl FnOnce() -> Option<PathBuf> + Send + 'static) -> Self {
@@ -61,7 +82,7 @@ impl FileDialog {
             let _ = sender.send(choose());
         };
         // Without a thread the sender is dropped, which reads as cancelled.
-        let _ = thread::Builder::new().name("file dialog".to_owned()).spawn(ask);
+        let _ = work::spawn("file dialog", ask);
         Self { answer }
     }
 
@@ -90,20 +111,6 @@ mod desktop {
 
     pub(super) fn choose_folder() -> Option<PathBuf> {
         rfd::FileDialog::new().pick_folder()
-    }
-}
-
-/// A web page gets contents, never a path.
-#[cfg(target_family = "wasm")]
-mod desktop {
-    use super::{FileAction, FileKind, PathBuf};
-
-    pub(super) fn choose(_: FileAction, _: &FileKind) -> Option<PathBuf> {
-        None
-    }
-
-    pub(super) fn choose_folder() -> Option<PathBuf> {
-        None
     }
 }
 

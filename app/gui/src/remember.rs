@@ -9,11 +9,11 @@ use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::thread::{self, JoinHandle};
 
 use brushwork_link::Failure;
 use brushwork_link::files::{Disk, Files, replace};
-use crossbeam_channel::{Receiver, Sender, bounded};
+use brushwork_link::work::Worker;
+use crossbeam_channel::{Receiver, TrySendError, bounded};
 use egui::{Context, Rect, ThemePreference, ViewportInfo};
 use serde::{Deserialize, Serialize};
 
@@ -253,36 +253,30 @@ fn sane(mut remembered: Remembered) -> Remembered {
 struct Writer {
     files: Arc<dyn Files>,
     path: Option<PathBuf>,
-    sender: Option<Sender<Remembered>>,
+    worker: Worker<Remembered>,
     failures: Receiver<Failure>,
-    thread: Option<JoinHandle<()>>,
 }
 
 impl Writer {
     fn start(files: Arc<dyn Files>, path: Option<PathBuf>) -> Self {
-        let (sender, wanted) = bounded::<Remembered>(1);
         let (tell, failures) = bounded(1);
         let (own, disk) = (path.clone(), files.clone());
-        let work = move || {
-            let Some(path) = own else { return };
-            for remembered in wanted {
-                if let Err(failure) = write(&*disk, &path, &remembered) {
-                    // One sentence is enough; the next one has to wait until it was read.
-                    let _ = tell.try_send(failure);
-                }
+        let keep = move |remembered| {
+            let written = own.as_ref().map_or(Ok(()), |path| write(&*disk, path, &remembered));
+            if let Err(failure) = written {
+                // One sentence is enough; the next one has to wait until it was read.
+                let _ = tell.try_send(failure);
             }
         };
-        let thread = thread::Builder::new().name("window state".to_owned()).spawn(work).ok();
-        Self { files, path, sender: Some(sender), failures, thread }
+        Self { files, path, worker: Worker::start("window state", 1, keep), failures }
     }
 
     /// False if the one before is still being written.
     fn write(&self, remembered: &Remembered) -> bool {
-        let Some(sender) = self.sender.as_ref().filter(|_| self.path.is_some() && self.thread.is_some())
-        else {
+        if self.path.is_none() || !self.worker.is_there() {
             return true;
-        };
-        !matches!(sender.try_send(remembered.clone()), Err(crossbeam_channel::TrySendError::Full(_)))
+        }
+        !matches!(self.worker.give(remembered.clone()), Err(TrySendError::Full(_)))
     }
 
     fn failure(&self) -> Option<Failure> {
@@ -291,11 +285,7 @@ impl Writer {
 
     /// The window closes: what is still to be written is written, last of all `remembered`.
     fn finish(&mut self, remembered: &Remembered) {
-        self.sender = None;
-        if let Some(thread) = self.thread.take() {
-            // A panic there has been reported by its own thread.
-            let _ = thread.join();
-        }
+        self.worker.finish();
         if let Some(path) = &self.path {
             // There is no window left to say it in.
             let _ = write(&*self.files, path, remembered);

@@ -1,6 +1,5 @@
 //! Reading what others have written, up to a bound: a device or a pipe may never end, and a file may be any file.
 
-use std::fs::File;
 use std::io::{self, BufRead, Read};
 use std::path::Path;
 
@@ -33,7 +32,11 @@ pub fn read(source: impl Read, most_bytes: u64) -> io::Result<Vec<u8>> {
 /// # Errors
 /// As for [`read`].
 pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
-    read(File::open(path)?, MOST_BYTES)
+    #[cfg(not(target_family = "wasm"))]
+    let source = std::fs::File::open(path)?;
+    #[cfg(target_family = "wasm")]
+    let source = crate::files::page::open(path)?;
+    read(source, MOST_BYTES)
 }
 
 /// The text of a file.

@@ -5,7 +5,13 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::{Duration, Instant};
+use std::time::{Duration, SystemTime};
+
+#[cfg(not(target_family = "wasm"))]
+pub use std::time::Instant;
+/// A web page asks the browser.
+#[cfg(target_family = "wasm")]
+pub use web_time::Instant;
 
 /// A source of monotonic time, shared by the device thread and by those who talk to it.
 pub trait Clock: Send + Sync {
@@ -18,6 +24,16 @@ pub trait Clock: Send + Sync {
     /// The device thread does not look at it before `until`, unless it is woken. A clock that is shared with a simulated machine stands
     /// still for whoever is overdue.
     fn rest_until(&self, _until: Duration) {}
+}
+
+/// The date and time that the computer shows.
+#[must_use]
+pub fn today() -> SystemTime {
+    #[cfg(not(target_family = "wasm"))]
+    return SystemTime::now();
+    #[cfg(target_family = "wasm")]
+    return SystemTime::UNIX_EPOCH
+        + web_time::SystemTime::now().duration_since(web_time::SystemTime::UNIX_EPOCH).unwrap_or_default();
 }
 
 /// The machine's monotonic clock; its epoch is the moment it was made.

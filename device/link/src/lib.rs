@@ -23,6 +23,7 @@ pub mod settings;
 pub mod transport;
 pub mod unit;
 pub mod wire;
+pub mod work;
 
 pub use brushwork_values::Message;
 pub use clock::{Clock, SystemClock, VirtualClock};

@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use brushwork_link::Identity;
 use brushwork_link::files::{Disk, Files};
 use brushwork_link::settings::{Act, OpenedProfile, Profile, ReadReport, Strictness};
+use brushwork_link::{Identity, clock};
 
 use super::sequence;
 use super::store::{KeepError, Record, Store};
@@ -88,12 +88,12 @@ impl Backup {
 impl Store {
     /// Keeps a profile as a backup of a unit, made before an act. Old backups give way.
     pub fn back_up(&self, unit: &UnitId, act: Act, profile: &Profile) -> Result<Backup, KeepError> {
-        self.back_up_at(SystemTime::now(), unit, act, profile)
+        self.back_up_at(clock::today(), unit, act, profile)
     }
 
     /// Keeps a profile as a backup of a unit because somebody asked for it. Old backups give way.
     pub fn back_up_now(&self, unit: &UnitId, profile: &Profile) -> Result<Backup, KeepError> {
-        self.back_up_called(SystemTime::now(), unit, ASKED_FOR, profile)
+        self.back_up_called(clock::today(), unit, ASKED_FOR, profile)
     }
 
     /// Keeps all settings of a unit before its firmware is replaced.

@@ -1,8 +1,8 @@
 //! Journals of acts that were begun and not told to have ended.
 
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
 
+use brushwork_link::clock;
 use brushwork_link::settings::{Aftermath, Journal, SettingValue, SettingsImage, SettingsTable};
 
 use super::backups::stamp;
@@ -33,7 +33,7 @@ impl Store {
     pub fn open_journal(&self, unit: &UnitId, journal: &Journal) -> Result<PathBuf, KeepError> {
         let mut files = self.journal_files()?;
         let number = sequence::next(files.iter().map(|path| after_owner(sequence::stem(path))));
-        let dated = format!("{}-{}", stamp(SystemTime::now()), unit.file_name());
+        let dated = format!("{}-{}", stamp(clock::today()), unit.file_name());
         let name = format!("{}{}", unit.owner(), sequence::numbered(number, &dated));
         let path = self.path(&[FOLDER, &format!("{name}.json")])?;
         self.put(Record::Journal, &path, &journal.to_json())?;

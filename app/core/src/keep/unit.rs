@@ -1,6 +1,7 @@
 //! Which controller something was kept of, as far as a computer can tell one from another.
 
 use brushwork_link::family::model_named;
+use brushwork_link::files::process_id;
 use brushwork_link::{Identity, PortInfo, Profile, SettingsImage, Subject, UnitAddress};
 
 use super::today::today;
@@ -54,7 +55,7 @@ impl UnitId {
     /// How the names of files begin that are about the present of this unit: one that is simulated in this program
     /// is gone with it, and the next of that name is another one.
     pub(super) fn owner(&self) -> String {
-        if self.is_simulated { format!("{OWNER}{}-", std::process::id()) } else { String::new() }
+        if self.is_simulated { format!("{OWNER}{}-", process_id()) } else { String::new() }
     }
 
     /// Whether a profile was taken of this unit, or could have been before it got another address.

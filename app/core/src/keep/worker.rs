@@ -4,11 +4,11 @@ use crate::messages::{CoreActMessage, CoreCauseMessage, CoreRemedyMessage};
 use brushwork_link::messages::ActMessage;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
-use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use brushwork_link::Failure;
 use brushwork_link::settings::{Act, Ending, Entry, Journal, Keeper, Profile, SettingsImage};
+use brushwork_link::work;
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 
 use super::store::{KeepError, Store};
@@ -20,7 +20,7 @@ const QUEUE: usize = 64;
 /// How long one look at whether something is kept may take.
 const MOMENT: Duration = Duration::from_millis(10);
 
-/// The store, and the thread that writes to it. Dropping it waits for what is still to be written.
+/// The store, and the thread that writes to it. Dropping the last of its clones waits for what is still to be written.
 #[derive(Clone, Debug)]
 pub struct Keeping {
     store: Store,
@@ -29,8 +29,7 @@ pub struct Keeping {
 
 #[derive(Debug)]
 struct Worker {
-    tasks: Option<Sender<Task>>,
-    thread: Option<JoinHandle<()>>,
+    tasks: work::Worker<Task>,
     /// What could not be kept at the end of acts, and was not told yet.
     faults: Arc<Mutex<Vec<KeepError>>>,
 }
@@ -58,14 +57,12 @@ struct Begun {
 impl Keeping {
     /// Keeps in `store`.
     pub fn new(store: Store) -> Self {
-        let (sender, tasks) = bounded(QUEUE);
         let own = store.clone();
         let faults = Arc::new(Mutex::new(Vec::new()));
         let told = faults.clone();
-        let work = move || tasks.iter().for_each(|task| perform(&own, &told, task));
-        // Without a thread the sender's other end is gone: nothing can be kept, so nothing is begun.
-        let thread = thread::Builder::new().name("keep".to_owned()).spawn(work).ok();
-        Self { store, worker: Arc::new(Worker { tasks: Some(sender), thread, faults }) }
+        // Where the system gives no thread, nothing can be kept, so nothing is begun.
+        let tasks = work::Worker::start("keep", QUEUE, move |task| perform(&own, &told, task));
+        Self { store, worker: Arc::new(Worker { tasks, faults }) }
     }
 
     /// The files.
@@ -91,16 +88,6 @@ impl Keeping {
     }
 }
 
-impl Drop for Worker {
-    fn drop(&mut self) {
-        self.tasks = None;
-        if let Some(thread) = self.thread.take() {
-            // A panic of that thread has told itself already.
-            let _ = thread.join();
-        }
-    }
-}
-
 struct UnitKeeper {
     origin: Origin,
     worker: Arc<Worker>,
@@ -114,15 +101,13 @@ impl Keeper for UnitKeeper {
     fn begin(&mut self, entry: Entry) {
         let (answer, answered) = bounded(1);
         let task = Task::Begin { origin: self.origin.clone(), entry: Box::new(entry), answer };
-        if let Some(tasks) = &self.worker.tasks {
-            // A full queue drops the answer, which is told as a failure.
-            let _ = tasks.try_send(task);
-        }
+        // A full queue drops the answer, which is told as a failure.
+        let _ = self.worker.tasks.give(task);
         self.answer = Some(answered);
     }
 
     fn begun(&mut self) -> Option<Result<(), Failure>> {
-        let answer = self.answer.as_ref()?.recv_timeout(MOMENT);
+        let answer = work::wait(self.answer.as_ref()?, MOMENT);
         match answer {
             Ok(Ok(begun)) => {
                 self.begun = Some(begun);
@@ -140,17 +125,17 @@ impl Keeper for UnitKeeper {
     }
 
     fn end(&mut self, ending: Ending) {
-        let (Some(begun), Some(tasks)) = (self.begun.take(), &self.worker.tasks) else { return };
+        let Some(begun) = self.begun.take() else { return };
         let (done, ended) = bounded(1);
         let task = Task::End { origin: self.origin.clone(), begun: Box::new(begun), ending, done };
         // A journal that stays open for want of room is looked at once more; nothing is lost by that.
-        let _ = tasks.try_send(task);
+        let _ = self.worker.tasks.give(task);
         self.ended = Some(ended);
     }
 
     fn ended(&mut self) -> bool {
         let Some(ended) = &self.ended else { return true };
-        !matches!(ended.recv_timeout(MOMENT), Err(RecvTimeoutError::Timeout))
+        !matches!(work::wait(ended, MOMENT), Err(RecvTimeoutError::Timeout))
     }
 }
 

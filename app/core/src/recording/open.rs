@@ -1,7 +1,6 @@
 //! Opens a recording of either form, told apart by how it begins.
 
-use brushwork_link::Message;
-use std::fs::File;
+use brushwork_link::{Message, files};
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
@@ -19,7 +18,7 @@ pub fn read(
 ) -> Result<Option<Message>, RecordingError> {
     let name = path.display().to_string();
     let io = |source| RecordingError::Io { path: name.clone(), source };
-    let mut file = File::open(path).map_err(io)?;
+    let mut file = files::open(path).map_err(io)?;
     let mut first = Vec::new();
     file.by_ref().take(5).read_to_end(&mut first).map_err(io)?;
     file.seek(SeekFrom::Start(0)).map_err(io)?;
@@ -94,12 +93,12 @@ mod tests {
             let folder = tempfile::tempdir().unwrap();
             let records = sweeps(&steps);
             let path = folder.path().join("run.csv");
-            let mut writer = CsvWriter::new(File::create(&path).unwrap(), &head(), Times::Exchange).unwrap();
+            let mut writer = CsvWriter::new(std::fs::File::create(&path).unwrap(), &head(), Times::Exchange).unwrap();
             records.iter().for_each(|record| writer.write(record).unwrap());
             writer.flush().unwrap();
             let from_csv = read_file(&path);
             let path = folder.path().join("run.bwr");
-            let mut writer = CompactWriter::new(File::create(&path).unwrap(), &head()).unwrap();
+            let mut writer = CompactWriter::new(std::fs::File::create(&path).unwrap(), &head()).unwrap();
             records.iter().for_each(|record| writer.write(record).unwrap());
             writer.flush().unwrap();
             let from_compact = read_file(&path);

@@ -8,6 +8,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
+use brushwork_link::files::{Disk, Files as _};
+use brushwork_link::work::HAS_THREADS;
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TrySendError, bounded};
 
 use super::compact::CompactWriter;
@@ -41,6 +43,34 @@ pub struct Recorder {
     sender: Option<Sender<Record>>,
     progress: Arc<Mutex<Progress>>,
     thread: Option<JoinHandle<()>>,
+    /// Where there are no threads.
+    held: Option<Mutex<Held>>,
+}
+
+/// A recording in memory, written whole at its end.
+struct Held {
+    writer: Writer<Counted<Memory>>,
+    memory: Memory,
+}
+
+impl std::fmt::Debug for Held {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Held")
+    }
+}
+
+/// Bytes that are held. Clones are the same.
+#[derive(Clone, Default)]
+struct Memory(Arc<Mutex<Vec<u8>>>);
+
+impl Write for Memory {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).write(bytes)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
 }
 
 impl Recorder {
@@ -49,6 +79,9 @@ impl Recorder {
     /// # Errors
     /// There is no thread for it. What goes wrong with the file is told by [`Recorder::progress`].
     pub fn start(path: &Path, form: Form, head: Head) -> std::io::Result<Self> {
+        if !HAS_THREADS {
+            return Self::held(path, form, &head);
+        }
         let file_path = path.to_owned();
         let open = move || -> std::io::Result<Box<dyn Write>> {
             if let Some(folder) = file_path.parent() {
@@ -57,6 +90,14 @@ impl Recorder {
             Ok(Box::new(OpenOptions::new().write(true).create_new(true).open(file_path)?))
         };
         Self::into(path, form, head, open)
+    }
+
+    /// Begins one that is held in memory until it ends.
+    fn held(path: &Path, form: Form, head: &Head) -> std::io::Result<Self> {
+        let (progress, memory) = (Arc::new(Mutex::new(Progress::default())), Memory::default());
+        let counted = Counted { inner: memory.clone(), progress: progress.clone() };
+        let held = Held { writer: Writer::new(counted, form, head)?, memory };
+        Ok(Self { path: path.to_owned(), sender: None, progress, thread: None, held: Some(Mutex::new(held)) })
     }
 
     fn into(
@@ -75,7 +116,7 @@ impl Recorder {
             lock(&reported).ended = Some(result.map_err(|error| sentence(&name, &error)));
         };
         let thread = thread::Builder::new().name("recorder".to_owned()).spawn(work)?;
-        Ok(Self { path: path.to_owned(), sender: Some(sender), progress, thread: Some(thread) })
+        Ok(Self { path: path.to_owned(), sender: Some(sender), progress, thread: Some(thread), held: None })
     }
 
     /// The file.
@@ -86,6 +127,15 @@ impl Recorder {
 
     /// Hands a record over; never waits.
     pub fn record(&self, record: Record) {
+        if let Some(held) = &self.held {
+            let written = held.lock().unwrap_or_else(PoisonError::into_inner).writer.write(&record);
+            let mut progress = lock(&self.progress);
+            match written {
+                Ok(()) => progress.samples += u64::from(matches!(record, Record::Sample(_))),
+                Err(_) => progress.dropped += 1,
+            }
+            return;
+        }
         let Some(sender) = &self.sender else { return };
         if let Err(TrySendError::Full(_)) = sender.try_send(record) {
             lock(&self.progress).dropped += 1;
@@ -95,6 +145,15 @@ impl Recorder {
     /// Ends the recording; the file is closed soon after.
     pub fn stop(&mut self) {
         self.sender = None;
+        if let Some(held) = self.held.take() {
+            let Held { mut writer, memory } = held.into_inner().unwrap_or_else(PoisonError::into_inner);
+            let result = writer.flush().and_then(|()| {
+                let bytes = memory.0.lock().unwrap_or_else(PoisonError::into_inner);
+                Disk.write(&self.path, &bytes)
+            });
+            let name = self.path.display().to_string();
+            lock(&self.progress).ended = Some(result.map_err(|error| sentence(&name, &error)));
+        }
     }
 
     /// How far it is.
@@ -139,6 +198,13 @@ enum Writer<W: Write> {
 }
 
 impl<W: Write> Writer<W> {
+    fn new(out: W, form: Form, head: &Head) -> std::io::Result<Self> {
+        Ok(match form {
+            Form::Csv => Self::Csv(Box::new(CsvWriter::new(out, head, Times::Exchange)?)),
+            Form::Compact => Self::Compact(CompactWriter::new(out, head)?),
+        })
+    }
+
     fn write(&mut self, record: &Record) -> std::io::Result<()> {
         match self {
             Self::Csv(writer) => writer.write(record),
@@ -163,10 +229,7 @@ fn write_all(
     progress: &Arc<Mutex<Progress>>,
 ) -> std::io::Result<()> {
     let out = BufWriter::new(Counted { inner: file, progress: progress.clone() });
-    let mut writer = match form {
-        Form::Csv => Writer::Csv(Box::new(CsvWriter::new(out, head, Times::Exchange)?)),
-        Form::Compact => Writer::Compact(CompactWriter::new(out, head)?),
-    };
+    let mut writer = Writer::new(out, form, head)?;
     writer.flush()?;
     let mut flushed = Instant::now();
     loop {
@@ -241,6 +304,24 @@ mod tests {
             let progress = recorder.progress();
             assert_eq!((progress.samples, progress.dropped), (1000, 0));
             assert_eq!(std::fs::metadata(&path).unwrap().len(), progress.bytes);
+        }
+    }
+
+    #[test]
+    fn without_threads_the_file_is_written_at_the_end_and_reads_the_same() {
+        let folder = tempfile::tempdir().unwrap();
+        for form in [Form::Csv, Form::Compact] {
+            let path = |name: &str| folder.path().join(format!("{name}.{}", form.extension()));
+            let (held, threaded) = (path("held"), path("threaded"));
+            let recorders = [Recorder::held(&held, form, &head()), Recorder::start(&threaded, form, head())];
+            for recorder in recorders {
+                let mut recorder = recorder.unwrap();
+                (0..1000).for_each(|at| recorder.record(sample(at * 1000)));
+                recorder.stop();
+                assert_eq!(settled(&recorder), Ok(()));
+                assert_eq!(recorder.progress().samples, 1000);
+            }
+            assert_eq!(std::fs::read(&held).unwrap(), std::fs::read(&threaded).unwrap());
         }
     }
 

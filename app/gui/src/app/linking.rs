@@ -6,6 +6,7 @@ use brushwork_canopen::{NodeId, nmt};
 use brushwork_core::session::bus;
 use brushwork_link::Message;
 use brushwork_link::transport::TargetError;
+use brushwork_link::work;
 use brushwork_link::{Addresses, ConnectTarget, Failure, PollRate, Request};
 use crossbeam_channel::{TryRecvError, bounded};
 use egui::Context;
@@ -183,7 +184,7 @@ impl App {
             let _ = sender.send(bus::start(&target, None, node).map(|started| started.message(node)));
         };
         // Without a thread the receiver is disconnected, which is told.
-        let _ = std::thread::Builder::new().name("start node".to_owned()).spawn(work);
+        let _ = work::spawn("start node", work);
         self.model.canopen.starting = Some(started);
     }
 

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use brushwork_link::work;
 use brushwork_script::debug::code_id;
 use brushwork_script::language::Language;
 use brushwork_script::names::Names;
@@ -60,7 +61,7 @@ impl Compiler {
                 let _ = sender.send(compiled);
             };
             // Without a thread there are no names, which the panel tells.
-            if std::thread::Builder::new().name("program names".to_owned()).spawn(work).is_ok() {
+            if work::spawn("program names", work).is_ok() {
                 self.running = Some(receiver);
             }
         }

@@ -11,7 +11,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, SystemTime};
 
-use brushwork_link::files::replace_file;
+use brushwork_link::files::{Disk, Files as _, replace_file};
+use brushwork_link::{clock, work};
 use crossbeam_channel::{Receiver, bounded};
 use egui::vec2;
 
@@ -104,9 +105,8 @@ struct Loading {
 
 impl Default for GraphFiles {
     fn default() -> Self {
-        let home = std::env::home_dir().unwrap_or_else(std::env::temp_dir);
         Self {
-            folder: home.join("Brushwork").display().to_string(),
+            folder: own_folder().display().to_string(),
             open_path: String::new(),
             open_as: OpenAs::default(),
             device: String::new(),
@@ -119,6 +119,14 @@ impl Default for GraphFiles {
             dark: true,
         }
     }
+}
+
+/// Where recordings go unless another folder is chosen. A web page downloads what is written there.
+fn own_folder() -> PathBuf {
+    if cfg!(target_family = "wasm") {
+        return PathBuf::from(brushwork_core::keep::folder::DOWNLOADS);
+    }
+    std::env::home_dir().unwrap_or_else(std::env::temp_dir).join("Brushwork")
 }
 
 impl GraphFiles {
@@ -193,13 +201,13 @@ impl GraphFiles {
             let _ = sender.send(load::load(&path, &counted, &stop));
         };
         // Without a thread the channel is closed, which is told as a failure.
-        let _ = std::thread::Builder::new().name("read recording".to_owned()).spawn(read);
+        let _ = work::spawn("read recording", read);
         self.loading = Some(Loading { name, open_as: self.open_as, rows, given_up, answer });
     }
 
     fn free_path(&mut self, extension: &str) -> PathBuf {
         let is_free = |path: &Path| !self.begun.contains(path) && !path.exists();
-        let name = dated_name(SystemTime::now());
+        let name = dated_name(clock::today());
         let path = free_path(Path::new(self.folder.trim()), &name, extension, is_free);
         self.begun.insert(path.clone());
         path
@@ -207,7 +215,7 @@ impl GraphFiles {
 
     /// The wall's time at a time of the link.
     fn wall(&self, at: Duration) -> SystemTime {
-        let (wall, link) = self.clocks.unwrap_or((SystemTime::now(), at));
+        let (wall, link) = self.clocks.unwrap_or((clock::today(), at));
         if at >= link { wall + (at - link) } else { wall.checked_sub(link - at).unwrap_or(wall) }
     }
 
@@ -243,8 +251,8 @@ impl GraphFiles {
             let _ = sender.send(said);
         };
         // Without a thread the channel is closed and nothing was written.
-        match std::thread::Builder::new().name("export".to_owned()).spawn(work) {
-            Ok(_) => self.working.push(receiver),
+        match work::spawn("export", work) {
+            Ok(()) => self.working.push(receiver),
             Err(error) => {
                 self.say(Gravity::Error, WindowStatusMessage::NotExported { error: error.to_string() });
             }
@@ -254,7 +262,7 @@ impl GraphFiles {
 
 /// The file appears whole or not at all.
 fn write_new(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    std::fs::create_dir_all(path.parent().unwrap_or(Path::new(".")))?;
+    Disk.make_folder(path.parent().unwrap_or(Path::new(".")))?;
     replace_file(path, bytes)
 }
 

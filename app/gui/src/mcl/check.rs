@@ -2,8 +2,10 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
+use brushwork_link::clock::Instant;
+use brushwork_link::work::HAS_THREADS;
 use brushwork_script::language::Language;
 use brushwork_script::mcl::index::Index;
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
@@ -39,6 +41,13 @@ pub struct Checker {
     next: Arc<Mutex<Option<Job>>>,
     wake: Sender<()>,
     answers: Receiver<Checked>,
+    /// Where there are no threads, whoever asks checks at once.
+    here: Option<Here>,
+}
+
+struct Here {
+    sender: Sender<Checked>,
+    tell: Box<dyn Fn() + Send>,
 }
 
 impl std::fmt::Debug for Checker {
@@ -53,16 +62,26 @@ impl Checker {
         let next = Arc::new(Mutex::new(None));
         let (wake, woken) = bounded(1);
         let (sender, answers) = bounded(1);
+        if !HAS_THREADS {
+            let here = Some(Here { sender, tell: Box::new(tell) });
+            return Self { next, wake, answers, here };
+        }
         let slot = next.clone();
         // A system that gives no thread leaves the list of problems empty; F7 still checks.
         let _ = thread::Builder::new()
             .name("mcl check".to_owned())
             .spawn(move || work(&slot, &woken, &sender, &tell));
-        Self { next, wake, answers }
+        Self { next, wake, answers, here: None }
     }
 
     /// Has a text checked in place of what still waits.
     pub fn ask(&self, id: DocId, revision: u64, text: Rope, language: Language) {
+        if let Some(here) = &self.here {
+            // Only the newest counts.
+            let _ = self.answers.try_recv();
+            let _ = here.sender.try_send(check(id, revision, text.to_string(), language));
+            return (here.tell)();
+        }
         *self.next.lock().unwrap_or_else(PoisonError::into_inner) =
             Some(Job { id, revision, text, language });
         // A thread that is awake already looks for the newest text by itself.

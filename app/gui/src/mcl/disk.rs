@@ -2,14 +2,13 @@
 
 use crate::messages::{WindowActMessage, WindowCauseMessage, WindowRemedyMessage};
 use brushwork_link::Message;
-use std::fs;
 use std::io;
 use std::path::Path;
 use std::time::SystemTime;
 
 use brushwork_link::Failure;
 use brushwork_link::bounded;
-use brushwork_link::files::replace_file;
+use brushwork_link::files::{self, replace_file};
 
 /// How letters are written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -163,8 +162,8 @@ pub struct Stamp {
 
 impl Stamp {
     pub fn of(path: &Path) -> io::Result<Self> {
-        let found = fs::metadata(path)?;
-        Ok(Self { changed: found.modified().ok(), length: found.len() })
+        let found = files::look(path)?;
+        Ok(Self { changed: found.changed, length: found.bytes })
     }
 }
 
@@ -187,7 +186,7 @@ pub fn read(path: &Path) -> Result<Loaded, Failure> {
     };
     let stamp = Stamp::of(path).map_err(|error| failed(Message::error(error)))?;
     // A device or a pipe may never end.
-    if !fs::metadata(path).is_ok_and(|found| found.is_file()) {
+    if !files::look(path).is_ok_and(|found| found.is_file) {
         return Err(failed(WindowCauseMessage::NoFile.into()));
     }
     let bytes = bounded::read_file(path).map_err(|error| failed(Message::error(error)))?;
@@ -260,7 +259,7 @@ mod tests {
         let path = folder.path().join("a.mcl");
         let stamp = write(&path, b"one").unwrap();
         assert_eq!(read(&path).unwrap().stamp, stamp);
-        fs::write(&path, "longer").unwrap();
+        std::fs::write(&path, "longer").unwrap();
         assert_ne!(read(&path).unwrap().stamp, stamp);
         assert!(read(&folder.path().join("none")).is_err());
     }

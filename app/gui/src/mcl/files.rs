@@ -4,10 +4,10 @@ use crate::messages::{WindowActMessage, WindowCauseMessage, WindowRemedyMessage}
 use brushwork_link::Message;
 use brushwork_link::messages::RemedyMessage;
 use std::path::{Path, PathBuf};
-use std::thread;
 
 use brushwork_link::Failure;
-use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
+use brushwork_link::work::Worker;
+use crossbeam_channel::{Receiver, TrySendError, bounded};
 
 use super::disk::{self, Loaded, Stamp};
 use super::doc_id::DocId;
@@ -76,9 +76,8 @@ pub enum SaveError {
 
 /// The thread.
 pub struct Files {
-    tasks: Option<Sender<Task>>,
+    tasks: Worker<Task>,
     done: Receiver<Done>,
-    thread: Option<thread::JoinHandle<()>>,
 }
 
 impl std::fmt::Debug for Files {
@@ -90,19 +89,26 @@ impl std::fmt::Debug for Files {
 impl Files {
     /// Starts the thread; the journal is in the folder `data`, if there is one. `tell` is called when there is news.
     pub fn start(data: Option<&Path>, tell: impl Fn() + Send + 'static) -> Self {
-        let (tasks, queue) = bounded(QUEUE);
         let (sender, done) = bounded(QUEUE);
-        let journal = data.map(Journal::at);
-        let work = move || work(&queue, &sender, journal, &tell);
-        // Without a thread every task is refused, which is said.
-        let thread = thread::Builder::new().name("mcl files".to_owned()).spawn(work).ok();
-        Self { tasks: Some(tasks), done, thread }
+        let mut journal = data.map(Journal::at);
+        let mut complained = false;
+        let work = move |task| {
+            let done = perform(task, journal.as_mut());
+            let done = done.filter(|done| {
+                !matches!(done, Done::NotKept(_)) || !std::mem::replace(&mut complained, true)
+            });
+            // A window that is gone wants no answer, but what it asked for is still done.
+            if done.is_some_and(|done| sender.send(done).is_ok()) {
+                tell();
+            }
+        };
+        // Where the system gives no thread, every task is refused, which is said.
+        Self { tasks: Worker::start("mcl files", QUEUE, work), done }
     }
 
     /// Queues a task; a failure is told.
     pub fn ask(&self, task: Task) -> Result<(), Failure> {
-        let Some(tasks) = &self.tasks else { return Ok(()) };
-        tasks.try_send(task).map_err(|error| {
+        self.tasks.give(task).map_err(|error| {
             let why = match error {
                 TrySendError::Full(_) => WindowCauseMessage::DiskIsBusy,
                 TrySendError::Disconnected(_) => WindowCauseMessage::NoThread,
@@ -119,27 +125,9 @@ impl Files {
 impl Drop for Files {
     /// Waits for what is still to be written.
     fn drop(&mut self) {
-        self.tasks = None;
-        if let Some(thread) = self.thread.take() {
-            // Nobody takes the answers any more; a full channel would hold the thread up.
-            self.done = bounded(0).1;
-            let _ = thread.join();
-        }
-    }
-}
-
-fn work(queue: &Receiver<Task>, sender: &Sender<Done>, mut journal: Option<Journal>, tell: &impl Fn()) {
-    let mut complained = false;
-    for task in queue {
-        let done = perform(task, journal.as_mut());
-        let done = done
-            .filter(|done| !matches!(done, Done::NotKept(_)) || !std::mem::replace(&mut complained, true));
-        if let Some(done) = done {
-            // A window that is gone wants no answer, but what it asked for is still done.
-            if sender.send(done).is_ok() {
-                tell();
-            }
-        }
+        // Nobody takes the answers any more; a full channel would hold the thread up.
+        self.done = bounded(0).1;
+        self.tasks.finish();
     }
 }
 

@@ -2,13 +2,13 @@
 
 use crate::messages::{EditorMessage, WindowActMessage, WindowCauseMessage, WindowRemedyMessage};
 use brushwork_link::messages::RemedyMessage;
+use std::env;
 use std::ffi::OsStr;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::{env, thread};
 
-use brushwork_link::Failure;
+use brushwork_link::{Failure, work};
 use crossbeam_channel::{Receiver, Sender, bounded};
 
 /// Answers that wait to be told; a person does not print more at once.
@@ -126,7 +126,7 @@ impl Printing {
             let _ = sender.try_send(done);
             tell();
         };
-        if thread::Builder::new().name("mcl print".to_owned()).spawn(work).is_err() {
+        if work::spawn("mcl print", work).is_err() {
             let _ = self.sender.try_send(Err(refused));
         }
     }

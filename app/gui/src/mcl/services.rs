@@ -4,6 +4,7 @@ use crate::messages::{EditorMessage, WindowStatusMessage};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use brushwork_link::work::HAS_THREADS;
 use brushwork_link::{Failure, Message};
 use egui::Context;
 
@@ -31,7 +32,8 @@ impl Editor {
         };
         let services = Services {
             checker: Checker::start(waker()),
-            files: Files::start(data, waker()),
+            // What is unsaved is kept against a crash on a disk with locks, which a web page has not.
+            files: Files::start(data.filter(|_| HAS_THREADS), waker()),
             asked: None,
             looked_at_s: 0.0,
         };

@@ -1,87 +1,12 @@
-//! The system's own disk.
+//! Files on the program's own disk, written whole.
 
-use crate::bounded;
-use std::fs::{self, File};
-use std::io::{self, Write as _};
-use std::path::{Path, PathBuf};
+use std::io;
+use std::path::Path;
 
-use super::layer::{Files, replace};
+use super::Disk;
+use super::layer::replace;
 
-/// The disk of this computer.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Disk;
-
-impl Files for Disk {
-    fn read(&self, path: &Path) -> io::Result<String> {
-        bounded::read_text(path)
-    }
-
-    fn list(&self, folder: &Path) -> io::Result<Vec<PathBuf>> {
-        fs::read_dir(folder)?.map(|entry| entry.map(|entry| entry.path())).collect()
-    }
-
-    fn make_folder(&self, folder: &Path) -> io::Result<()> {
-        fs::create_dir_all(folder)
-    }
-
-    fn write(&self, path: &Path, content: &[u8]) -> io::Result<()> {
-        File::create(path)?.write_all(content)
-    }
-
-    fn flush(&self, path: &Path) -> io::Result<()> {
-        if path.is_dir() {
-            return flush_folder(path);
-        }
-        // Windows flushes only what is open for writing.
-        File::options().write(true).open(path)?.sync_all()
-    }
-
-    fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
-        fs::rename(from, to)
-    }
-
-    fn remove(&self, path: &Path) -> io::Result<()> {
-        fs::remove_file(path)
-    }
-
-    fn open_lock(&self, path: &Path) -> io::Result<Option<File>> {
-        File::options().create(true).truncate(false).write(true).open(path).map(Some)
-    }
-
-    fn resolve(&self, path: &Path) -> PathBuf {
-        fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())
-    }
-
-    fn copy_rights(&self, from: &Path, to: &Path) -> io::Result<()> {
-        match fs::metadata(from) {
-            Ok(found) => fs::set_permissions(to, found.permissions()),
-            Err(_) => Ok(()),
-        }
-    }
-}
-
-/// Makes new names last over a power loss of the computer, where the system lets a folder be flushed.
-#[cfg(unix)]
-#[allow(clippy::wildcard_enum_match_arm, reason = "the enum is not ours")]
-fn flush_folder(folder: &Path) -> io::Result<()> {
-    match File::open(folder).and_then(|folder| folder.sync_all()) {
-        // A file system that cannot flush a folder, or lets it be written and not read, keeps names its own way.
-        Err(error) => match error.kind() {
-            io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported | io::ErrorKind::PermissionDenied => {
-                Ok(())
-            }
-            _ => Err(error),
-        },
-        Ok(()) => Ok(()),
-    }
-}
-
-#[cfg(not(unix))]
-fn flush_folder(_folder: &Path) -> io::Result<()> {
-    Ok(())
-}
-
-/// Replaces a file of the system's disk; see [`replace`].
+/// Replaces a file of the program's disk; see [`replace`].
 ///
 /// # Errors
 /// As [`replace`].
@@ -94,7 +19,8 @@ pub fn replace_file(path: &Path, content: &[u8]) -> io::Result<()> {
 /// # Errors
 /// [`io::ErrorKind::AlreadyExists`] where something has that name, be it a link into nothing; else as [`replace`].
 pub fn write_new_file(path: &Path, content: &[u8]) -> io::Result<()> {
-    if path.symlink_metadata().is_ok() {
+    // What a web page downloads gets a name of its own from the browser.
+    if cfg!(not(target_family = "wasm")) && path.symlink_metadata().is_ok() {
         return Err(io::Error::new(io::ErrorKind::AlreadyExists, "it is there already, and is not replaced"));
     }
     replace_file(path, content)

@@ -6,6 +6,18 @@ use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::SystemTime;
+
+/// What a file is like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Look {
+    /// No folder, device or pipe.
+    pub is_file: bool,
+    /// Its length.
+    pub bytes: u64,
+    /// When it was changed, as far as the system tells.
+    pub changed: Option<SystemTime>,
+}
 
 /// What keeping needs of a file system, each a call that can fail and behind which the power may go.
 pub trait Files: fmt::Debug + Send + Sync {
@@ -71,6 +83,19 @@ pub trait Files: fmt::Debug + Send + Sync {
     }
 }
 
+/// What tells this run of the program from others. A web page has no number: the moment at which it asks first stands for one.
+#[must_use]
+pub fn process_id() -> u32 {
+    #[cfg(not(target_family = "wasm"))]
+    return std::process::id();
+    #[cfg(target_family = "wasm")]
+    {
+        static FIRST: std::sync::OnceLock<u32> = std::sync::OnceLock::new();
+        let since = || crate::clock::today().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
+        *FIRST.get_or_init(|| since().as_millis() as u32)
+    }
+}
+
 /// Tells the temporary files of one process apart.
 static SERIAL: AtomicU32 = AtomicU32::new(0);
 
@@ -104,6 +129,6 @@ fn temporary_beside(target: &Path) -> io::Result<PathBuf> {
     let serial = SERIAL.fetch_add(1, Ordering::Relaxed);
     let mut hidden = OsString::from(".");
     hidden.push(name);
-    hidden.push(format!(".{}-{serial}.tmp", std::process::id()));
+    hidden.push(format!(".{}-{serial}.tmp", process_id()));
     Ok(target.with_file_name(hidden))
 }

@@ -1,13 +1,23 @@
 //! The small layer through which everything that is kept on this computer is read and written: the system's disk, or a simulated one that tests
-//! fill up, lock and cut off at any call.
+//! fill up, lock and cut off at any call. A web page has its files in memory.
 
 mod disk;
 mod layer;
+mod memory;
+#[cfg(target_family = "wasm")]
+pub(crate) mod page;
 mod simulated;
+#[cfg(not(target_family = "wasm"))]
+mod system;
 
-pub use disk::{Disk, replace_file, write_new_file};
-pub use layer::{Files, replace};
+pub use disk::{replace_file, write_new_file};
+pub use layer::{Files, Look, process_id, replace};
+pub use memory::{MemoryDisk, Shelf};
+#[cfg(target_family = "wasm")]
+pub use page::{Disk, look, open, page};
 pub use simulated::{DiskFault, Remains, SimulatedDisk};
+#[cfg(not(target_family = "wasm"))]
+pub use system::{Disk, look, open};
 
 #[cfg(test)]
 mod tests {

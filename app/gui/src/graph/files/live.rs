@@ -3,6 +3,7 @@
 use crate::messages::{GraphMessage, WindowStatusMessage};
 use std::time::{Duration, SystemTime};
 
+use brushwork_link::clock;
 use brushwork_link::device::Sample;
 use crossbeam_channel::TryRecvError;
 use egui::Rect;
@@ -24,7 +25,7 @@ impl LiveGraph {
     /// Looks after files: once per frame. `now` is the link's time, while there is a link.
     pub fn poll_files(&mut self, now: Option<Duration>, dark: bool) -> Vec<Said> {
         self.files.dark = dark;
-        self.files.clocks = now.map(|now| (SystemTime::now(), now)).or(self.files.clocks);
+        self.files.clocks = now.map(|now| (clock::today(), now)).or(self.files.clocks);
         let mut said = Vec::new();
         self.poll_recording(&mut said);
         self.poll_loading(&mut said);

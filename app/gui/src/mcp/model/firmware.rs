@@ -5,7 +5,7 @@ use crate::mcp::messages::DownloadMessage;
 use crate::messages::{FirmwareMessage, WindowActMessage};
 use brushwork_link::Message;
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use brushwork_link::device::{Event, Identity, Job, JobTicket, QueuedJob};
 use brushwork_link::settings::{ReadReport, Subject, read_all};
@@ -22,6 +22,7 @@ use brushwork_core::keep::{OpenUpdate, Store, UnitId};
 use brushwork_core::session::firmware::{LoaderPlace, Upload, UploadEvent};
 use brushwork_core::update::{self, Compared, Expected, Kept, Verdict};
 use brushwork_link::bounded;
+use brushwork_link::clock::Instant;
 
 /// How long reading all settings may take.
 const READ_LIMIT: Duration = Duration::from_secs(120);
