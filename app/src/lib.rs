@@ -9,9 +9,12 @@ mod mcp;
 #[cfg(feature = "bench")]
 mod motion_mind;
 
+#[cfg(not(target_family = "wasm"))]
 use brushwork_cli::family::Family as Commands;
+#[cfg(not(target_family = "wasm"))]
 use brushwork_core::{guardian, panics};
 use brushwork_family::{Examiner, Simulator, examine, simulator};
+#[cfg(not(target_family = "wasm"))]
 use brushwork_gui::run::{WindowOptions, run as open_window};
 use brushwork_gui::screens::face::Window;
 use brushwork_link::Driver;
@@ -28,6 +31,7 @@ pub struct Family {
     /// What the window shows of them.
     pub window: &'static dyn Window,
     /// What they add to the command line.
+    #[cfg(not(target_family = "wasm"))]
     pub commands: &'static dyn Commands,
     /// What judges the tuner on them, where they can be tuned.
     #[cfg(feature = "bench")]
@@ -45,6 +49,7 @@ pub static FAMILIES: [Family; 4] = [
         simulator: &brushwork_mcp::McpSimulator,
         examiner: Some(&brushwork_mcp::McpExaminer),
         window: &brushwork_gui::mcp::Mcp,
+        #[cfg(not(target_family = "wasm"))]
         commands: &brushwork_cli::mcp::McpCommands,
         #[cfg(feature = "bench")]
         judge: Some(brushwork_tuning_bench::mcp::JUDGE),
@@ -56,6 +61,7 @@ pub static FAMILIES: [Family; 4] = [
         simulator: &brushwork_motion_mind::MotionMindSimulator,
         examiner: Some(&brushwork_motion_mind::MotionMindExaminer),
         window: &brushwork_gui::motion_mind::MotionMind,
+        #[cfg(not(target_family = "wasm"))]
         commands: &brushwork_cli::motion_mind::MotionMindCommands,
         #[cfg(feature = "bench")]
         judge: Some(brushwork_tuning_bench::motion_mind::JUDGE),
@@ -67,6 +73,7 @@ pub static FAMILIES: [Family; 4] = [
         simulator: &brushwork_suprmotr::SuprMotrSimulator,
         examiner: None,
         window: &brushwork_gui::suprmotr::SuprMotr,
+        #[cfg(not(target_family = "wasm"))]
         commands: &brushwork_cli::suprmotr::SuprMotrCommands,
         #[cfg(feature = "bench")]
         judge: Some(brushwork_tuning_bench::suprmotr::JUDGE),
@@ -78,6 +85,7 @@ pub static FAMILIES: [Family; 4] = [
         simulator: &brushwork_motorvator::MotorvatorSimulator,
         examiner: None,
         window: &brushwork_gui::motorvator::Motorvator,
+        #[cfg(not(target_family = "wasm"))]
         commands: &brushwork_cli::mecc::MotorvatorCommands,
         #[cfg(feature = "bench")]
         judge: None,
@@ -92,10 +100,21 @@ pub fn install() {
     simulator::install(&FAMILIES.each_ref().map(|family| family.simulator));
     examine::install(&FAMILIES.iter().filter_map(|family| family.examiner).collect::<Vec<_>>());
     brushwork_gui::install(&FAMILIES.each_ref().map(|family| family.window));
+    #[cfg(not(target_family = "wasm"))]
     brushwork_cli::family::install(&FAMILIES.each_ref().map(|family| family.commands));
 }
 
+/// Runs the program as a web page: the window, with simulated controllers.
+#[cfg(target_family = "wasm")]
+#[must_use]
+pub fn run() -> ExitCode {
+    install();
+    brushwork_gui::page::run();
+    ExitCode::SUCCESS
+}
+
 /// Runs the program: a command, or the window where none is given.
+#[cfg(not(target_family = "wasm"))]
 #[must_use]
 pub fn run() -> ExitCode {
     let mut words = std::env::args_os().skip(1);

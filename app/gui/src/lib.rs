@@ -31,6 +31,7 @@ pub mod model;
 pub mod motion_mind;
 pub mod motorvator;
 pub mod opener;
+pub mod page;
 pub mod parts;
 pub mod remember;
 #[cfg(not(target_family = "wasm"))]

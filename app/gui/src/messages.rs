@@ -188,6 +188,7 @@ messages! {
         WindingPutBack "L and R are put back as they were before the run.",
         WindingNotPutBack "L and R could not be put back as they were before the run. Set them under Velocity loop, or switch the controller off and on: its EEPROM still has them.",
         GaveUp "Gave up connecting.",
+        WentAhead { seconds: u64 } "The simulated time has gone {seconds} s ahead: this browser cannot draw the window in the middle of a run.",
         NoLinkThread "Could not open the link: the system gave no thread. Try again.",
         Of { target: String, text: Message } "{target}: {text}",
         NodeStartSent { node: NodeId } "The start was sent to {node}: its heartbeat tells what comes of it.",

@@ -25,6 +25,7 @@ pub mod firmware;
 pub mod in_step;
 pub mod line;
 pub mod simulation;
+pub mod turned;
 
 pub use simulation::{LIKE, Simulation, SimulationError};
 
@@ -63,6 +64,14 @@ pub enum SessionError {
         "Could not look for nodes on the CAN bus: this program has no family of controllers that are nodes."
     )]
     NoNodes,
+    /// A web page reaches no port and no network.
+    #[error(
+        "{target} cannot be reached from a web page, which has simulated controllers alone. For a real one install Brushwork on this computer."
+    )]
+    OnlySimulated {
+        /// What was to be opened.
+        target: String,
+    },
     /// The port is that of a controller in its firmware loader.
     #[error(
         "{port} is a controller that waits in its firmware loader ({product}), which answers nothing else. Switch it off and on; if it \
@@ -210,6 +219,16 @@ fn on_can(target: &ConnectTarget, simulation: Option<&Simulation>) -> Option<(Op
     }
 }
 
+/// Which nodes to look for. What was asked may be an address of packet serial, which a node does not have.
+fn can_addresses(addresses: Addresses) -> Addresses {
+    match addresses {
+        Addresses::Only(address) if NodeId::new(address).is_none() => Addresses::Scan,
+        addresses @ (Addresses::Scan | Addresses::Only(_) | Addresses::These(_) | Addresses::Factory) => {
+            addresses
+        }
+    }
+}
+
 fn spawn_on_can(
     transport: Box<dyn Transport>,
     clock: Arc<dyn Clock>,
@@ -219,13 +238,7 @@ fn spawn_on_can(
 ) -> Result<Session, SessionError> {
     let alone = simulation.clone().filter(|simulation| simulation.is_single());
     let options = DeviceOptions {
-        addresses: match options.addresses {
-            // What was asked is an address of packet serial, which a node does not have.
-            Addresses::Only(address) if NodeId::new(address).is_none() => Addresses::Scan,
-            addresses @ (Addresses::Scan | Addresses::Only(_) | Addresses::These(_) | Addresses::Factory) => {
-                addresses
-            }
-        },
+        addresses: can_addresses(options.addresses),
         poll: options.poll,
         simulated: simulation.is_some(),
         // Hidden settings are found by address, which nodes share.

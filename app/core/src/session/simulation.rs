@@ -78,21 +78,7 @@ impl Simulation {
     /// # Errors
     /// The text names something that does not exist, or the system gives no thread.
     pub fn start(text: &str) -> Result<Self, SimulationError> {
-        let wrong = |why: String| SimulationError::Spec { text: text.to_owned(), why };
-        let (simulator, started, unlike) = match text.strip_prefix(LIKE) {
-            Some(path) => like(Path::new(path)).map_err(wrong)?,
-            None => {
-                let Some(simulator) = simulator::asked_for(text) else {
-                    return Err(wrong("this program has no simulated controllers".to_owned()));
-                };
-                let started = simulator.start(text).map_err(|error| match error {
-                    SimulatorError::Spec(why) => wrong(why),
-                    SimulatorError::Params(error) => SimulationError::Params(error),
-                    SimulatorError::Line(why) => SimulationError::Line(why),
-                })?;
-                (simulator, started, Vec::new())
-            }
-        };
+        let (simulator, started, unlike) = make(text)?;
         let Started { machine, addresses, nodes, can_form, index, stream, seed } = started;
         let options = ServerOptions { stream: index, seed, ..ServerOptions::default() };
         let line = SimulatedLine::new(machine);
@@ -216,6 +202,26 @@ impl Simulation {
     pub fn unit_at(&self, address: UnitAddress) -> Option<usize> {
         self.addresses.iter().position(|unit| *unit == address)
     }
+}
+
+/// Units that were made, what made them, and what of the unit that they were made like they do not imitate.
+type Made = (&'static dyn Simulator, Started, Vec<String>);
+
+/// Makes what the text behind `sim:` describes.
+pub(super) fn make(text: &str) -> Result<Made, SimulationError> {
+    let wrong = |why: String| SimulationError::Spec { text: text.to_owned(), why };
+    if let Some(path) = text.strip_prefix(LIKE) {
+        return like(Path::new(path)).map_err(wrong);
+    }
+    let Some(simulator) = simulator::asked_for(text) else {
+        return Err(wrong("this program has no simulated controllers".to_owned()));
+    };
+    let started = simulator.start(text).map_err(|error| match error {
+        SimulatorError::Spec(why) => wrong(why),
+        SimulatorError::Params(error) => SimulationError::Params(error),
+        SimulatorError::Line(why) => SimulationError::Line(why),
+    })?;
+    Ok((simulator, started, Vec::new()))
 }
 
 impl fmt::Debug for Simulation {

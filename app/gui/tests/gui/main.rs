@@ -20,6 +20,7 @@ mod motion_mind_driving;
 mod motion_mind_kept;
 mod motion_mind_tuning;
 mod motorvator;
+mod page;
 mod path;
 mod pictures;
 mod pins;
