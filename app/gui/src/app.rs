@@ -120,6 +120,7 @@ impl App {
         }
         focus::note_input(&ctx);
         self.update(&ctx);
+        self.leave_missing_screen();
         self.take_files(&ctx);
         let mut commands = actions::shortcuts(&ctx, &mut self.model);
         self.model.appearance.language.begin();
@@ -457,6 +458,14 @@ impl App {
         }
         if screen == Screen::DeviceStatus {
             self.model.front.doubt_diagnosis();
+        }
+    }
+
+    /// Who turns to a controller that lacks the screen sees its status instead of nothing.
+    fn leave_missing_screen(&mut self) {
+        let front = &self.model.front;
+        if front.is_connected() && !front.screens().contains(&self.model.screen) {
+            self.show(Screen::DeviceStatus);
         }
     }
 
