@@ -34,6 +34,7 @@ messages! {
     /// What came back of what was tried, as a clause.
     pub enum WindowCauseMessage {
         NoFile "it is no file, but a folder, a device or a pipe",
+        PageHasNoPorts "a page in a browser has simulated controllers alone",
         DiskIsBusy "the disk is busy",
         NoThread "the system gave no thread for it",
         OtherUnit "another unit was chosen meanwhile",
@@ -46,6 +47,7 @@ messages! {
     /// What to do, as a sentence without its full stop.
     pub enum WindowRemedyMessage {
         TypeTarget "Type a path such as /dev/ttyUSB0 or COM3, or tcp:host:port",
+        InstallProgram "Install Brushwork on this computer for a controller of your own",
         CheckPath "Check the path and your rights",
         ChooseAnother "Choose another file",
         SaveElsewhere "Check the free space and your rights, or save it elsewhere",

@@ -11,6 +11,7 @@ use brushwork_link::transport::{ConnectTarget, PortInfo};
 use brushwork_link::{Addresses, Failure};
 use crossbeam_channel::{Receiver, bounded};
 
+use crate::messages::{WindowActMessage, WindowCauseMessage, WindowRemedyMessage};
 use crate::parts::{OpenLink, Opener, PortSource};
 
 /// What is turned. Clones are the same.
@@ -106,11 +107,16 @@ impl Opener for PageOpener {
     }
 }
 
-/// A page has no serial ports.
-pub struct NoPorts;
+/// A page has no serial ports, which it says once.
+#[derive(Default)]
+pub struct NoPorts {
+    is_told: bool,
+}
 
 impl PortSource for NoPorts {
     fn newest(&mut self) -> Option<Result<Vec<PortInfo>, Failure>> {
-        None
+        let is_told = std::mem::replace(&mut self.is_told, true);
+        let (act, cause) = (WindowActMessage::WatchPorts, WindowCauseMessage::PageHasNoPorts);
+        (!is_told).then(|| Err(Failure::new(act, "", cause, WindowRemedyMessage::InstallProgram)))
     }
 }

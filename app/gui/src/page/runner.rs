@@ -80,7 +80,7 @@ async fn start() -> Result<(), JsValue> {
         browser::set_window(ctx);
         ctx.add_plugin(Labels);
         let parts = Parts {
-            ports: Box::new(NoPorts),
+            ports: Box::new(NoPorts::default()),
             opener: Box::new(PageOpener(links.clone())),
             keeping: Keeping::new(Store::of_user()),
         };

@@ -76,6 +76,9 @@ fn ports_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         }
         (None, false) => {}
     }
+    if cfg!(target_family = "wasm") {
+        return;
+    }
     ui.weak(word("start", "Family, baud rate and address are chosen at the left, where a path, tcp:HOST:PORT or a CAN adapter can be typed too."));
     ui.collapsing(word("start", "It does not appear, or cannot be opened"), |ui| in_the_way_ui(ui, &ports));
 }

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use brushwork_core::keep::{Keeping, Store};
 use brushwork_gui::App;
+use brushwork_gui::model::Screen;
 use brushwork_gui::model::link::Arming;
 use brushwork_gui::page::{Links, NoPorts, PageOpener};
 use brushwork_gui::parts::{Parts, SimulatedWorld};
@@ -38,7 +39,7 @@ impl Page {
         let links = Links::default();
         let keeping = Keeping::new(Store::at(folder.path()));
         let opener = Box::new(PageOpener(links.clone()));
-        let mut parts = Some(Parts { ports: Box::new(NoPorts), opener, keeping });
+        let mut parts = Some(Parts { ports: Box::new(NoPorts::default()), opener, keeping });
         let target = target.to_owned();
         let harness = HarnessBuilder::default()
             .with_size([1280.0, 800.0])
@@ -201,6 +202,14 @@ fn every_family() {
         let pace = page.app().world().and_then(SimulatedWorld::pace);
         assert!(pace.is_some(), "{target}");
     }
+    // A controller that lacks the screen in front is seen by its status.
+    let mut page = Page::connected("sim:mcp266");
+    page.press("Velocity Settings");
+    page.app().open("sim:suprmotr-v9");
+    page.pass_ms(5000);
+    let model = &page.app().model;
+    assert!(model.front.is_connected() && model.front.screens().len() > 3);
+    assert_eq!(model.screen, Screen::DeviceStatus);
 }
 
 #[test]
@@ -228,4 +237,6 @@ fn a_port_is_refused_in_a_sentence_that_says_what_reaches_it() {
     assert!(!page.app().model.front.is_connected());
     let said = page.said();
     assert!(said.iter().any(|text| text.contains("install Brushwork on this computer")), "{said:?}");
+    let listing = page.app().model.devices.listing_failure.clone().expect("a page has no ports");
+    assert!(listing.to_string().contains("has simulated controllers alone"), "{listing}");
 }
