@@ -23,34 +23,54 @@ pub fn changed_text(status: Option<StatusReport>, number: u8) -> &'static str {
     }
 }
 
-pub fn display_ui(ui: &mut Ui, connection: &Connection) {
+/// The two characters and the inputs, as the library tells them.
+pub fn display_and_inputs_ui(ui: &mut Ui, connection: &Connection) {
     heading_ui(ui, "Display and inputs");
-    let palette = Palette::of(ui);
     let status = connection.link.status;
-    let shown = status.and_then(|status| indicators::display_of(status.word));
+    let is_told = status.is_some_and(|status| indicators::display_of(status.word).is_some());
     ui.horizontal(|ui| {
-        let (place, response) = ui.allocate_exact_size(vec2(2.0 * SIZE.x, SIZE.y), Sense::hover());
-        let text = shown.map_or_else(|| "  ".to_owned(), characters_text);
-        let label = BoardMessage::Display { text: text.clone() }.to_string();
-        response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &label));
-        ui.painter().rect_stroke(place, 3.0, Stroke::new(1.0, palette.line), egui::StrokeKind::Inside);
-        for (index, letter) in text.chars().enumerate() {
-            let middle = place.left_center() + vec2((index as f32 + 0.5) * SIZE.x, 0.0);
-            let font = FontId::monospace(34.0);
-            ui.painter().text(middle, Align2::CENTER_CENTER, letter, font, palette.text);
-        }
+        characters_ui(ui, connection);
         ui.add_space(12.0);
         for number in 1..=4_u8 {
-            let word = changed_text(status.filter(|_| shown.is_some()), number);
+            let word = changed_text(status.filter(|_| is_told), number);
             ui.vertical(|ui| {
                 ui.label(BoardMessage::Input { number }.to_string());
                 ui.label(RichText::new(word).small().weak());
             });
         }
     });
-    let source = match shown {
-        Some(_) => "As the host library tells them: it hears when an input changes, not how it stands.",
-        None => "The host library does not answer: what another program shows, nobody tells.",
+    source_ui(ui, is_told);
+}
+
+/// The two characters alone, where the inputs stand elsewhere.
+pub fn display_ui(ui: &mut Ui, connection: &Connection) {
+    heading_ui(ui, "Display");
+    characters_ui(ui, connection);
+    if connection.link.status.is_none_or(|status| indicators::display_of(status.word).is_none()) {
+        source_ui(ui, false);
+    }
+}
+
+fn characters_ui(ui: &mut Ui, connection: &Connection) {
+    let palette = Palette::of(ui);
+    let shown = connection.link.status.and_then(|status| indicators::display_of(status.word));
+    let (place, response) = ui.allocate_exact_size(vec2(2.0 * SIZE.x, SIZE.y), Sense::hover());
+    let text = shown.map_or_else(|| "  ".to_owned(), characters_text);
+    let label = BoardMessage::Display { text: text.clone() }.to_string();
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &label));
+    ui.painter().rect_stroke(place, 3.0, Stroke::new(1.0, palette.line), egui::StrokeKind::Inside);
+    for (index, letter) in text.chars().enumerate() {
+        let middle = place.left_center() + vec2((index as f32 + 0.5) * SIZE.x, 0.0);
+        let font = FontId::monospace(34.0);
+        ui.painter().text(middle, Align2::CENTER_CENTER, letter, font, palette.text);
+    }
+}
+
+fn source_ui(ui: &mut Ui, is_told: bool) {
+    let source = if is_told {
+        "As the host library tells them: it hears when an input changes, not how it stands."
+    } else {
+        "The host library does not answer: what another program shows, nobody tells."
     };
     ui.label(RichText::new(source).small().weak());
 }

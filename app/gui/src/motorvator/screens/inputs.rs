@@ -87,7 +87,9 @@ fn analog_ui(ui: &mut Ui, number: usize, text: Option<String>, reads: Option<f64
         fixed_label_ui(ui, &BoardMessage::AnalogName { number }.to_string(), NAME_WIDTH);
         let value = text.unwrap_or_else(|| "not read".to_owned());
         let share = reads.unwrap_or(0.0) / 255.0;
-        let response = ui.add(ProgressBar::new(share as f32).desired_width(160.0).text(""));
+        // Rounded ends would make a dot of nothing.
+        let bar = ProgressBar::new(share as f32).desired_width(160.0).corner_radius(2.0).text("");
+        let response = ui.add(bar);
         let spoken = BoardMessage::AnalogInput { number, value: value.clone() }.to_string();
         response.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, &spoken));
         ui.label(RichText::new(value).text_style(theme::figures()));

@@ -40,7 +40,7 @@ impl Face for Motorvator {
     }
 
     fn leds_ui(&self, ui: &mut Ui, connection: &Connection) {
-        display::display_ui(ui, connection);
+        display::display_and_inputs_ui(ui, connection);
     }
 }
 
