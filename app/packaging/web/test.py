@@ -175,14 +175,14 @@ def tunes(browser, pauses):
     looks = 0
     while time.monotonic() < begun + 120 and browser.seen()["tuning"]:
         looks += 1
-        if looks == 20:
+        if looks == 5:
             browser.picture("tuning.png")
         time.sleep(0.1)
     took_s = time.monotonic() - begun
     browser.picture("tuned.png")
     said = browser.seen()["said"]
     check(not browser.seen()["tuning"], f"the run does not end: {said}")
-    check(looks > 20 or not pauses, f"the window was drawn {looks} times in the middle of the run")
+    check(looks >= 5 or not pauses, f"the window was drawn {looks} times in the middle of the run")
     went_ahead = any("gone" in text and "ahead" in text for text in said)
     check(went_ahead != pauses, f"whether the time went ahead is told: {said}")
     browser.click("Apply (RAM)")

@@ -48,6 +48,14 @@ impl Ending {
     pub fn was_starved(&self) -> bool {
         self.stderr.iter().any(|line| line.contains("did not renew the motion within"))
     }
+
+    /// Whether a controller was silent that a test simulates beside the program: on a crowded machine its thread has no processor to answer
+    /// with, for longer than a line that was quick until then is waited for.
+    #[must_use]
+    pub fn found_silence(&self) -> bool {
+        let said = ["no answer within", "does not answer any more"];
+        self.stderr.iter().any(|line| said.iter().any(|said| line.contains(said)))
+    }
 }
 
 impl Program {
