@@ -42,6 +42,8 @@ pub(super) struct Fence {
     is_clear: bool,
     /// The direction that was commanded last.
     heading: f64,
+    /// Where a loop was sent, counts: it stops there by itself, and a fence before it would be its goal instead.
+    target: Option<f64>,
 }
 
 impl Fence {
@@ -71,6 +73,7 @@ impl Fence {
         // A duty higher than any before gives a speed higher than any before.
         self.commanded = self.top * if duty.abs() > self.top_duty { share } else { share.min(1.0) };
         self.top_duty = self.top_duty.max(duty.abs());
+        self.target = None;
         if duty != 0.0 {
             self.heading = duty.signum();
         }
@@ -79,11 +82,18 @@ impl Fence {
     /// A loop is about to be given a speed, counts/s.
     pub(super) fn head_at(&mut self, speed: f64) {
         self.head(speed);
+        self.target = None;
         self.commanded = (IN_PROPORTION * speed.abs()).min(self.top);
     }
 
+    /// A loop is about to be sent to a place, counts.
+    pub(super) fn head_for(&mut self, target: f64) {
+        self.head(target - self.position());
+        self.target = Some(target);
+    }
+
     /// A loop is about to be commanded to go in a direction: the sign says which.
-    pub(super) fn head(&mut self, direction: f64) {
+    fn head(&mut self, direction: f64) {
         self.is_clear = true;
         self.commanded = self.top;
         if direction != 0.0 {
@@ -111,16 +121,20 @@ impl Fence {
         let position = f64::from(counts);
         let (lowest, highest) =
             self.travel.map_or((f64::from(i32::MIN), f64::from(i32::MAX)), |(l, h)| (l as f64, h as f64));
+        let beyond = |side: f64| match self.target {
+            Some(target) if (target - position) * side > 0.0 => target,
+            Some(_) | None => position,
+        };
         let due = |fence: Option<i32>, wanted: f64, side: f64| {
             // The cast saturates.
             let wanted = wanted as i32;
             let Some(fence) = fence else { return Some(wanted) };
-            let distance = (f64::from(fence) - position) * side;
+            let distance = (f64::from(fence) - beyond(side)) * side;
             let is_far = distance > FAR * room && self.heading * side > 0.0;
             (fence != wanted && (distance < MOVED_BELOW * room || is_far)).then_some(wanted)
         };
-        let low = due(self.low, (position - room).max(lowest), -1.0);
-        (low, due(self.high, (position + room).min(highest), 1.0))
+        let low = due(self.low, (beyond(-1.0) - room).max(lowest), -1.0);
+        (low, due(self.high, (beyond(1.0) + room).min(highest), 1.0))
     }
 
     fn room(&self, t: f64) -> f64 {
@@ -170,6 +184,23 @@ mod tests {
         follow(&mut fence, 0.0, 0.5, 20_000.0);
         let writes = follow(&mut fence, 0.5, 2.5, 20_000.0);
         assert!((4..=12).contains(&writes), "{writes} writes in two seconds");
+    }
+
+    #[test]
+    fn it_stands_beyond_the_place_that_a_loop_was_sent_to() {
+        let mut fence = Fence::default();
+        fence.see(0.0, 0);
+        fence.head_for(9_000.0);
+        let (low, high) = fence.due();
+        assert!(high.is_some_and(|high| high > 9_000) && low.is_some_and(|low| low < 0), "{low:?} {high:?}");
+        (fence.low, fence.high) = (low, high);
+        assert_eq!(fence.due(), (None, None));
+        fence.head_for(-3_000.0);
+        let (low, high) = fence.due();
+        assert!(low.is_some_and(|low| low < -3_000), "{low:?} {high:?}");
+        (fence.low, fence.high) = (low.or(fence.low), high.or(fence.high));
+        fence.drive(0.2);
+        assert!(fence.due().1.is_some_and(|high| high < 9_000), "a duty has no end: it is drawn in again");
     }
 
     #[test]

@@ -462,7 +462,7 @@ impl<C: MindCarrier> Axis for MindAxis<C> {
 
     fn command_position(&mut self, counts: i32, _speed: u32) -> Result<Exchange, AxisError> {
         self.close()?;
-        self.fence.head(f64::from(counts) - self.fence.position());
+        self.fence.head_for(f64::from(counts));
         self.mend_fence()?;
         self.send(Command::MoveToAbsolute(counts))
     }
