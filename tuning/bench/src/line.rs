@@ -66,7 +66,7 @@ pub struct SimulatedLine<M> {
     /// A line with jitter: the share of replies that are on their way for longer, and by how much at the most, s.
     pub line_jitter: Option<(f64, f64)>,
     /// Time that the host took since it was asked.
-    stolen: Duration,
+    pub stolen: Duration,
 }
 
 /// What a line needs of a simulated unit.

@@ -181,6 +181,7 @@ impl<'a, L: Law> ExperimentGuard<'a, L> {
     #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
     fn get_ready(&mut self) -> Result<(), Cause> {
         let setup = self.setup;
+        self.pause();
         L::ready(&setup.held)?;
         self.monitor.is_abrupt = self.actuation().slew_per_s.is_infinite();
         if let Some(travel) = self.options.travel.filter(|_| self.facts.keeps_travel) {
@@ -219,8 +220,10 @@ impl<'a, L: Law> ExperimentGuard<'a, L> {
         self.axis.progress(text);
     }
 
-    /// The run computes before it speaks to the axis again: the time that takes is its own, and no answer is late for it.
+    /// The run computes before it speaks to the axis again: the time that takes is its own, and no answer is late for it, nor for what this
+    /// computer took until now.
     pub(crate) fn pause(&mut self) {
+        self.axis.stolen();
         self.pace.pause();
     }
 

@@ -2,6 +2,7 @@
 
 use brushwork_mcp_axis::McpLaw;
 use brushwork_mcp_sim::controller::Controller;
+use brushwork_tuning::axis::Axis as _;
 use brushwork_tuning::cause::{Cause, Whose};
 use brushwork_tuning::law::Law;
 use brushwork_tuning::report::{Report, Verdict};
@@ -225,6 +226,27 @@ fn a_host_that_stood_still_is_told_from_a_line_that_did() {
         refused.0 > 0 && refused.1 > 0,
         "runs in which nothing was late enough test nothing: {refused:?}"
     );
+}
+
+#[test]
+fn what_a_computer_took_before_a_run_is_not_held_against_it() {
+    let plant = specimen(31, PLANT_OF_MOMENT[0]);
+    let mut late = 0;
+    for at_ms in (0..400).step_by(10) {
+        let mut axis = Unit::axis(&plant);
+        axis.carrier.stolen = Duration::from_secs(10);
+        let from = axis.now() + Duration::from_millis(at_ms);
+        axis.carrier.held_back = Some((from, STALL));
+        let report = tune(&mut axis, &once(request_of(&plant, Method::Velocity)));
+        for cause in &report.causes {
+            if let Cause::AnsweredLate { whose, .. } | Cause::TakenLate { whose, .. } = *cause {
+                assert_eq!(whose, Whose::Line, "at {at_ms} ms: {:?}", report.causes);
+                late += 1;
+            }
+        }
+    }
+    println!("{late} runs were late");
+    assert!(late > 0, "runs in which nothing was late enough test nothing");
 }
 
 #[test]
