@@ -357,7 +357,7 @@ impl App {
             }
             Command::ShowRecipe(job) => {
                 self.show(Screen::GeneralSettings);
-                self.model.front.general.recipes.job = job;
+                self.model.front.general.recipes.job = Some(job);
                 self.model.front.general.turn_to(Section::Recipes);
             }
             Command::OpenDrawer(screen, tab) => self.open_drawer(screen, tab),

@@ -13,6 +13,7 @@ use crate::messages::NameMessage;
 use crate::model::Screen;
 
 mod facts;
+mod goal;
 mod known;
 mod own;
 pub mod path;

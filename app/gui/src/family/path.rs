@@ -1,6 +1,6 @@
 //! The steps that lead from a controller that was just connected to an axis that is tuned, saved and backed up, as a family has them.
 
-use super::recipe::Goal;
+use super::goal::Goal;
 use crate::model::drawer::Tab;
 use crate::model::screen::Screen;
 

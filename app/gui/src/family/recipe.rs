@@ -4,57 +4,14 @@
 //! options there are say the tables: a recipe is offered where all it sets is there, and a test walks every recipe over every model and
 //! firmware.
 
-use brushwork_link::device::PinSignal;
+use brushwork_link::device::{Identity, PinSignal};
 use brushwork_link::settings::{Kind, SettingValue, SettingsImage, SettingsTable};
 use brushwork_link::{Channel, Message};
 
+pub use super::goal::Goal;
 use super::known::Known;
+use super::path::Place;
 use crate::model::indicator::IndicatorState;
-
-/// What a person wants.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Goal {
-    Home,
-    Limit,
-    EStop,
-    Stick,
-    Joystick,
-    Encoder,
-    Brake,
-    Battery,
-    TimeOut,
-    Address,
-}
-
-impl Goal {
-    pub const ALL: [Self; 10] = [
-        Self::Home,
-        Self::Limit,
-        Self::EStop,
-        Self::Stick,
-        Self::Joystick,
-        Self::Encoder,
-        Self::Brake,
-        Self::Battery,
-        Self::TimeOut,
-        Self::Address,
-    ];
-
-    pub const fn title(self) -> &'static str {
-        match self {
-            Self::Home => "Home switch",
-            Self::Limit => "Limit switch",
-            Self::EStop => "Emergency stop",
-            Self::Stick => "R/C stick",
-            Self::Joystick => "Analog joystick",
-            Self::Encoder => "Encoder",
-            Self::Brake => "Brake",
-            Self::Battery => "Battery protection",
-            Self::TimeOut => "Serial time-out",
-            Self::Address => "Bus address",
-        }
-    }
-}
 
 /// One recipe.
 #[derive(Debug)]
@@ -89,6 +46,8 @@ pub enum To {
     Option(&'static str),
     Number(f64),
     Flag(bool),
+    /// On where what was chosen for a placeholder is this.
+    Chosen(&'static str, &'static str),
 }
 
 /// What a person chooses.
@@ -121,6 +80,9 @@ pub enum Live {
     Channels(&'static [Channel]),
     /// Whether these indicators are lit, by their short names.
     Indicators(&'static [&'static str]),
+    /// What a board has told of itself, as the list of units has it.
+    Board,
+    All(&'static [Live]),
 }
 
 /// How it is wired: a part outside, and the wires from its terminals to those of the controller.
@@ -139,6 +101,8 @@ pub enum Part {
     Potentiometer,
     Encoder,
     Brake,
+    Motor,
+    Load,
     Battery,
     Computer,
 }
@@ -151,6 +115,8 @@ impl Part {
             Self::Potentiometer => "Potentiometer",
             Self::Encoder => "Encoder",
             Self::Brake => "Brake, by a relay",
+            Self::Motor => "Motor",
+            Self::Load => "Load, by a transistor",
             Self::Battery => "Battery",
             Self::Computer => "Computer",
         }
@@ -167,9 +133,35 @@ pub struct Looked<'u> {
     pub is_simulated: bool,
 }
 
+/// What a controller tells while the edits of its settings are looked at.
+pub struct Told<'t> {
+    pub identity: Option<&'t Identity>,
+    /// Where a pin stands, from 1.
+    pub signal: &'t dyn Fn(usize) -> Option<PinSignal>,
+    /// The newest of a channel.
+    pub reading: &'t dyn Fn(Channel) -> Option<f64>,
+    /// The bits of its status.
+    pub status: Option<u32>,
+}
+
 /// What a family knows of its recipes.
 pub trait Recipes: Sync {
     fn all(&self) -> &'static [Recipe];
+
+    /// What its people ask for, in order, with what it cannot do.
+    fn goals(&self) -> &'static [Goal] {
+        &Goal::USUAL
+    }
+
+    /// Why it has no recipe for one of them, and what to do instead.
+    fn without(&self, _goal: Goal) -> Option<&'static str> {
+        None
+    }
+
+    /// The screen on which a recipe goes on.
+    fn goes_on(&self, _goal: Goal) -> Option<Place> {
+        None
+    }
 
     /// How many motors a controller has.
     fn motors(&self, _table: &SettingsTable) -> usize {
@@ -202,15 +194,11 @@ pub trait Recipes: Sync {
     }
 
     /// What the edits of a unit will do as soon as they are written, with how much it matters.
-    fn consequences(
-        &self,
-        _unit: &Looked<'_>,
-        _signal: &dyn Fn(usize) -> Option<PinSignal>,
-    ) -> Vec<(IndicatorState, Message)> {
+    fn consequences(&self, _unit: &Looked<'_>, _told: &Told<'_>) -> Vec<(IndicatorState, Message)> {
         Vec::new()
     }
 
-    /// The recipes that a controller can do, in the order of [`Goal::ALL`]; none for a job that it has no setting for.
+    /// The recipes that a controller can do, in the order of [`Recipes::goals`]; none for a job that it has no setting for.
     fn of(&self, table: &SettingsTable) -> Vec<(Goal, Option<&'static Recipe>)> {
         let encoder_pin = |motor, phase| self.encoder_pin(table, motor, phase);
         let is_for = |recipe: &&Recipe| {
@@ -218,7 +206,7 @@ pub trait Recipes: Sync {
             !self.lacks(table, recipe) && recipe.is_for(table, (self.motors(table), &able), &encoder_pin)
         };
         let found = |job| self.all().iter().filter(|recipe| recipe.job == job).find(is_for);
-        Goal::ALL.into_iter().map(|job| (job, found(job))).collect()
+        self.goals().iter().map(|job| (*job, found(*job))).collect()
     }
 }
 
@@ -284,7 +272,10 @@ impl Recipe {
                     (To::Number(number), Kind::Int) => SettingValue::Int(number as i64),
                     (To::Number(number), Kind::Fixed { .. }) => SettingValue::Number(number),
                     (To::Flag(flag), Kind::Bool) => SettingValue::Bool(flag),
-                    (To::Option(_) | To::Number(_) | To::Flag(_), _) => return None,
+                    (To::Chosen(place, chosen), Kind::Bool) => {
+                        SettingValue::Bool(self.fill(place, answers, pins) == chosen)
+                    }
+                    (To::Option(_) | To::Number(_) | To::Flag(_) | To::Chosen(..), _) => return None,
                 };
                 Some((row.key.clone(), value))
             })

@@ -8,7 +8,7 @@ use brushwork_mcp_client::model_of;
 use brushwork_mcp_client::settings::{Behind, PinMode, SignalShape, change_mode};
 use brushwork_mcp_wire::packet_serial::status::StatusIndicator;
 
-use crate::family::recipe::{Ask, Goal, Live, Looked, Part, PinUse, Recipe, Recipes, Set, To, Wiring};
+use crate::family::recipe::{Ask, Goal, Live, Looked, Part, PinUse, Recipe, Recipes, Set, To, Told, Wiring};
 use crate::messages::PinMessage;
 use crate::model::IndicatorState;
 
@@ -398,13 +398,9 @@ impl Recipes for McpRecipes {
         !has_inputs && recipe.sets.iter().any(|set| set.key.contains("{s}"))
     }
 
-    fn consequences(
-        &self,
-        unit: &Looked<'_>,
-        signal: &dyn Fn(usize) -> Option<PinSignal>,
-    ) -> Vec<(IndicatorState, Message)> {
+    fn consequences(&self, unit: &Looked<'_>, told: &Told<'_>) -> Vec<(IndicatorState, Message)> {
         let pins = 1..=unit.table.subject().pins;
-        pins.flat_map(|pin| ["min", "max"].map(|end| consequence(unit, pin, end, signal(pin))))
+        pins.flat_map(|pin| ["min", "max"].map(|end| consequence(unit, pin, end, (told.signal)(pin))))
             .flatten()
             .collect()
     }

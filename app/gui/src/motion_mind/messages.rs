@@ -43,3 +43,21 @@ messages! {
         In { name: &'static str, copy: &'static str, value: String } "{name} in {copy}: {value}",
     }
 }
+
+messages! {
+    /// What edits of registers do once they are written.
+    pub enum EditMessage {
+        Above { counts: f64, limit: f64 } "The motor stands at {counts:.0} counts, above the virtual limit of {limit:.0}: as soon as this is written, nothing drives it further up.",
+        Below { counts: f64, limit: f64 } "The motor stands at {counts:.0} counts, below the virtual limit of {limit:.0}: as soon as this is written, nothing drives it further down.",
+        Within { counts: f64, low: f64, high: f64 } "The motor stands at {counts:.0} counts, between the virtual limits of {low:.0} and {high:.0}.",
+        Nowhere { low: f64, high: f64 } "Where the motor stands is not read yet: see that it is between {low:.0} and {high:.0} counts.",
+        Reduced { amps: f64, limit: f64 } "The motor draws {amps:.2} A now: as soon as this is written, its drive is reduced to {limit:.2} A.",
+        NoCurrentLimit "With 0 A nothing but the fuse limits the current as soon as this is written.",
+        OtherFeedback "Another feedback is another position: as soon as this is written, the motor may move at once.",
+        AskedBy { volts: f64 } "ANA_CON is at {volts:.2} V now: as soon as this is written, the motor goes where that asks for.",
+        AskedByUnread "As soon as this is written, the motor goes where the voltage at ANA_CON asks for, which is not read yet.",
+        Gains "A loop holds the motor: as soon as this is written, it goes by the new gains, and the motor may move.",
+        AtReset "ADSTEP counts after a reset of the unit.",
+        Rate "The other baud rate counts once it is stored and the power was off and on. Connect with it then.",
+    }
+}

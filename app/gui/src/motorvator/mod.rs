@@ -3,6 +3,7 @@
 mod action;
 pub mod messages;
 pub mod model;
+pub mod recipes;
 pub mod screens;
 
 pub use model::family::Motorvator;

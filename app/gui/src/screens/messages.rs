@@ -53,6 +53,7 @@ messages! {
         WithEdits { edits: usize } "Include what is changed here and not written ({edits})",
         Readings { readings: String } "Now {readings}",
         IndicatorNow { title: &'static str, state: &'static str } "{title} now: {state}",
+        BoardNow { title: &'static str, value: String } "{title} now: {value}",
         OnController { title: String, value: String } "{title} on the controller: {value}",
         DefaultIs { title: String, value: String } "{title} default: {value}",
         IsChanged { title: String } "{title} is changed",

@@ -67,3 +67,16 @@ messages! {
         Entry { number: u8, name: String } "{number} {name}",
     }
 }
+
+messages! {
+    /// What edits of settings do once they are written.
+    pub enum EditMessage {
+        NoLimits "As soon as this is written, no limit switch stops the motor.",
+        SwitchesUnread "How the limit switches stand is not read yet: one that is on stops the motor on its way as soon as this is written.",
+        StopsNegative "The negative limit switch counts as on now: as soon as this is written, the motor does not move in the negative direction.",
+        StopsPositive "The positive limit switch counts as on now: as soon as this is written, the motor does not move in the positive direction.",
+        SwitchesOff "Both limit switches will count as off as they stand now: nothing stops before one is reached.",
+        LetGo { lag: f64, limit: f64 } "The position lags by {lag:.0} counts now, more than {limit:.0}: as soon as this is written, the motor is let go.",
+        AddressKept "The address is kept in EEPROM as soon as this is written; every unit that is selected takes it.",
+    }
+}

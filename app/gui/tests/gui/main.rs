@@ -5,6 +5,7 @@ mod clamp;
 mod debugger;
 mod echo;
 mod examination;
+mod family_recipes;
 mod files;
 mod functions;
 mod general;

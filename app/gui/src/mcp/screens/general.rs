@@ -60,7 +60,7 @@ fn encoder_ui(ui: &mut Ui, general: &mut GeneralView<'_>) {
         .on_hover_text("Its kind, its pins, its wiring, and where it stands")
         .clicked()
     {
-        general.recipes.job = Goal::Encoder;
+        general.recipes.job = Some(Goal::Encoder);
         general.turn_to(Section::Recipes);
     }
 }

@@ -38,16 +38,11 @@ pub struct General {
 }
 
 /// Which recipe is looked at, and what was chosen of all that recipes ask for.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct RecipeChoice {
-    pub job: Goal,
+    /// None is the first that the controller can do.
+    pub job: Option<Goal>,
     pub answers: Answers,
-}
-
-impl Default for RecipeChoice {
-    fn default() -> Self {
-        Self { job: Goal::Home, answers: Answers::default() }
-    }
 }
 
 impl General {

@@ -14,10 +14,12 @@ use super::connection::{cannot_tune, driven};
 use super::drive::to_send;
 use super::{MotionMindConnection, words};
 use crate::family::path::{BACK_UP, PathStep, Place, SAVE, ShownBy, Step};
+use crate::family::recipe::Recipes;
 use crate::family::{Ability, ActiveIndicator, Family, Figure, Figures, Known, Own, SettingsWords, Sliders};
 use crate::messages::NameMessage;
 use crate::model::{HelpPage, IndicatorInfo, IndicatorState, Screen, Simulated, Tab, state_of};
 use crate::motion_mind::messages::MindMessage;
+use crate::motion_mind::recipes::MindRecipes;
 use crate::tune::Loop;
 
 #[derive(Debug)]
@@ -84,6 +86,10 @@ impl Family for MotionMind {
 
     fn path(&self) -> &'static [PathStep] {
         PATH
+    }
+
+    fn recipes(&self) -> Option<&'static dyn Recipes> {
+        Some(&MindRecipes)
     }
 
     fn figures(&self) -> &'static [Figures] {

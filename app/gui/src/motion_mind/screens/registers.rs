@@ -12,10 +12,11 @@ use egui::{
 
 use super::bits::{bits_ui, has_bits};
 use crate::command::Commands;
-use crate::model::{Connection, IndicatorState, Model, UnitSettings};
+use crate::model::{Connection, IndicatorState, Model, Section, UnitSettings};
 use crate::motion_mind::messages::RegisterMessage;
 use crate::motion_mind::model::registers::{in_unit, key};
-use crate::screens::general::{editor, framed_ui};
+use crate::motion_mind::recipes::MindRecipes;
+use crate::screens::general::{editor, framed_ui, recipes};
 use crate::theme::{self, Palette};
 use crate::widgets::{NO_VALUE, fixed_label_ui};
 use brushwork_core::words::capital;
@@ -35,7 +36,11 @@ const PANEL_SHARE: f32 = 0.34;
 const PANEL_WIDTH: (f32, f32) = (208.0, 460.0);
 
 pub fn registers_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-    framed_ui(ui, model, commands, |ui, model, _commands| {
+    framed_ui(ui, model, commands, |ui, model, commands| {
+        if parts_ui(ui, &mut model.front) {
+            let room = ui.available_height();
+            return recipes::recipes_ui(ui, &mut model.front, &MindRecipes, room, commands);
+        }
         let room = ui.available_rect_before_wrap();
         let beside = room.width() - TABLE_WIDTH;
         let width = (room.width() * PANEL_SHARE).min(beside).clamp(PANEL_WIDTH.0, PANEL_WIDTH.1);
@@ -51,6 +56,24 @@ pub fn registers_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             panel_ui(ui, &mut model.front);
         });
     });
+}
+
+/// All registers, or recipes. True where recipes are looked at.
+fn parts_ui(ui: &mut Ui, connection: &mut Connection) -> bool {
+    let general = &mut connection.general_view();
+    let shows_recipes = general.section == Section::Recipes && !general.is_filtered();
+    let (mut registers, mut recipes) = (false, false);
+    ui.horizontal(|ui| {
+        registers = ui.add(Button::selectable(!shows_recipes, "All registers")).clicked();
+        recipes = ui.add(Button::selectable(shows_recipes, "Recipes")).clicked();
+    });
+    if registers && shows_recipes {
+        general.turn_to(Section::default());
+    }
+    if recipes {
+        general.turn_to(Section::Recipes);
+    }
+    shows_recipes
 }
 
 /// What is typed into the search field, against name, help and number.

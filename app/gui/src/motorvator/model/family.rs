@@ -11,9 +11,11 @@ use brushwork_script::program::Program;
 use brushwork_values::Motor;
 
 use super::MotorvatorConnection;
+use crate::family::recipe::Recipes;
 use crate::family::{Ability, Family, Figure, Figures, Known, Own, SettingsWords, Sliders};
 use crate::model::{IndicatorInfo, Screen, Simulated};
 use crate::motorvator::messages::BoardMessage;
+use crate::motorvator::recipes::MotorvatorRecipes;
 
 #[derive(Debug)]
 pub struct Motorvator;
@@ -57,6 +59,10 @@ impl Family for Motorvator {
 
     fn library(&self) -> Option<Program> {
         compile(LIBRARY).program
+    }
+
+    fn recipes(&self) -> Option<&'static dyn Recipes> {
+        Some(&MotorvatorRecipes)
     }
 
     fn figures(&self) -> &'static [Figures] {

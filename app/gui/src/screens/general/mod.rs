@@ -16,7 +16,7 @@ pub(crate) mod help;
 mod kept;
 mod nav;
 mod profile;
-mod recipes;
+pub(crate) mod recipes;
 pub(crate) mod rows;
 pub(crate) mod sheet;
 pub(crate) mod sheet_parts;
@@ -106,7 +106,7 @@ fn section_ui(
     let recipes = model.front.family().recipes();
     let shows_recipes = model.front.general.section == Section::Recipes && !model.front.general.is_filtered();
     if let Some(recipes) = recipes.filter(|_| shows_recipes) {
-        return recipes::recipes_ui(ui, &mut model.front, recipes, room);
+        return recipes::recipes_ui(ui, &mut model.front, recipes, room, commands);
     }
     if !own_ui(ui, model, if has_rows { height } else { room }, commands) {
         let face = face::of(model.front.family());

@@ -8,42 +8,61 @@ use super::help;
 use super::rows::{self, Columns};
 use super::sheet_parts::{indicator_ui, text_ui};
 use super::wiring::{self, wiring_ui};
-use crate::family::recipe::{Answers, Ask, Goal, Live, Recipe, Recipes};
+use crate::command::Commands;
+use crate::family::recipe::{Answers, Ask, Goal, Live, Recipe, Recipes, Told};
 use crate::messages::NameMessage;
 use crate::model::{Connection, GeneralView, IndicatorState, UnitSettings};
 use crate::screens::messages::SettingMessage;
+use crate::screens::status::path;
 use crate::widgets::NO_VALUE;
 
 /// Room that the scroll bar may take.
 const BAR_WIDTH: f32 = 14.0;
+/// What is said where a family has no words of its own for what it cannot do.
+const WITHOUT: &str = "This controller, with the firmware that it has, has no setting for it.";
 /// Text beside the wiring, where there is room for both.
 const TEXT_WIDTH: f32 = 300.0;
 /// Room for what is asked, before its list.
 const ASK_WIDTH: f32 = 110.0;
 const LIST_WIDTH: f32 = 170.0;
 
-pub fn recipes_ui(ui: &mut Ui, front: &mut Connection, recipes: &'static dyn Recipes, height: f32) {
+pub fn recipes_ui(
+    ui: &mut Ui,
+    front: &mut Connection,
+    recipes: &'static dyn Recipes,
+    height: f32,
+    commands: &mut Commands,
+) {
     let size = vec2(ui.available_width(), height);
     ui.allocate_ui_with_layout(size, Layout::top_down(Align::Min), |ui| {
         ui.set_min_height(height);
         let Some(unit) = front.settings.unit() else { return };
         let offered = recipes.of(unit.table());
-        jobs_ui(ui, &mut front.general.recipes.job, &offered);
+        let first = offered.iter().find(|(_, recipe)| recipe.is_some()).or(offered.first());
+        let Some((first, _)) = first else { return };
+        let mut job = front.general.recipes.job.unwrap_or(*first);
+        if jobs_ui(ui, &mut job, &offered) {
+            front.general.recipes.job = Some(job);
+            front.general.recipes.answers.one = 0;
+        }
         ui.add_space(4.0);
-        let job = front.general.recipes.job;
         let salt = ("recipe", job.title());
         ScrollArea::vertical().id_salt(salt).auto_shrink(false).show(ui, |ui| {
             ui.label(RichText::new(job.title()).size(16.0).strong());
             match offered.iter().find(|(of, _)| *of == job).and_then(|(_, recipe)| *recipe) {
-                Some(recipe) => recipe_ui(ui, front, recipes, recipe),
-                None => text_ui(ui, "This controller, with the firmware that it has, has no setting for it."),
+                Some(recipe) => recipe_ui(ui, front, recipes, recipe, commands),
+                None => {
+                    text_ui(ui, recipes.without(job).unwrap_or(WITHOUT));
+                    goes_on_ui(ui, front, recipes, job, commands);
+                }
             }
         });
     });
 }
 
-/// What can be chosen; what this controller cannot do is there, and says so.
-fn jobs_ui(ui: &mut Ui, current: &mut Goal, offered: &[(Goal, Option<&'static Recipe>)]) {
+/// What can be chosen; what this controller cannot do is there, and says so. True where another was.
+fn jobs_ui(ui: &mut Ui, current: &mut Goal, offered: &[(Goal, Option<&'static Recipe>)]) -> bool {
+    let mut is_new = false;
     ui.horizontal_wrapped(|ui| {
         for (job, recipe) in offered {
             let text = RichText::new(job.title());
@@ -51,12 +70,30 @@ fn jobs_ui(ui: &mut Ui, current: &mut Goal, offered: &[(Goal, Option<&'static Re
             let button = Button::selectable(*current == *job, text).frame_when_inactive(true);
             if ui.add(button).clicked() {
                 *current = *job;
+                is_new = true;
             }
         }
     });
+    is_new
 }
 
-fn recipe_ui(ui: &mut Ui, front: &mut Connection, recipes: &'static dyn Recipes, recipe: &'static Recipe) {
+/// The way to the screen on which it goes on.
+fn goes_on_ui(ui: &mut Ui, front: &Connection, recipes: &dyn Recipes, job: Goal, commands: &mut Commands) {
+    if let Some(place) = recipes.goes_on(job) {
+        ui.add_space(4.0);
+        if ui.button(path::place_text(front, place)).clicked() {
+            commands.push(path::place_command(front, place));
+        }
+    }
+}
+
+fn recipe_ui(
+    ui: &mut Ui,
+    front: &mut Connection,
+    recipes: &'static dyn Recipes,
+    recipe: &'static Recipe,
+    commands: &mut Commands,
+) {
     let width = ui.available_width() - BAR_WIDTH;
     let wiring_width = wiring::SIZE.x;
     let is_wide = width >= TEXT_WIDTH + wiring_width;
@@ -69,11 +106,13 @@ fn recipe_ui(ui: &mut Ui, front: &mut Connection, recipes: &'static dyn Recipes,
             ui.allocate_ui_with_layout(vec2(left, 0.0), Layout::top_down(Align::Min), |ui| {
                 ui.set_width(left);
                 ask_ui(ui, front, recipes, recipe);
+                goes_on_ui(ui, front, recipes, recipe.job, commands);
             });
             wiring_ui(ui, &recipe.wiring, &name);
         });
     } else {
         ask_ui(ui, front, recipes, recipe);
+        goes_on_ui(ui, front, recipes, recipe.job, commands);
         wiring_ui(ui, &recipe.wiring, &name);
     }
     consequences_ui(ui, front, recipes, recipe);
@@ -96,12 +135,13 @@ fn complete(front: &mut Connection, recipes: &dyn Recipes, recipe: &Recipe) {
 
 /// What is done, what is asked, how it stands, and the button that makes it edits.
 fn ask_ui(ui: &mut Ui, front: &mut Connection, recipes: &'static dyn Recipes, recipe: &'static Recipe) {
-    text_ui(ui, recipe.text);
+    let answers = front.general.recipes.answers.clone();
+    text_ui(ui, &recipe.fill(recipe.text, &answers, &|_, _| None));
     ui.add_space(4.0);
     if let Some(unit) = front.settings.unit() {
         let answers = &mut front.general.recipes.answers;
         for ask in recipe.asks {
-            ui.horizontal(|ui| one_ask_ui(ui, *ask, answers, unit.table(), recipes));
+            ui.horizontal_wrapped(|ui| one_ask_ui(ui, *ask, answers, unit.table(), recipes));
         }
     }
     live_ui(ui, front, recipes, recipe.live);
@@ -208,6 +248,18 @@ fn live_ui(ui: &mut Ui, front: &Connection, recipes: &dyn Recipes, live: Live) {
                 &SettingMessage::Readings { readings: all.join(", ").trim_end().to_string() }.to_string(),
             );
         }
+        Live::All(all) => {
+            for live in all {
+                live_ui(ui, front, recipes, *live);
+            }
+        }
+        Live::Board => {
+            let told = front.link.identity().and_then(|identity| front.family().unit_row(identity));
+            if let Some((title, value)) = told {
+                let row = SettingMessage::BoardNow { title, value }.to_string();
+                indicator_ui(ui, IndicatorState::Active, &row);
+            }
+        }
         Live::Indicators(names) => {
             for info in front.family().indicators().iter().filter(|info| names.contains(&info.short)) {
                 let state = front.link.indicators.named(info.short);
@@ -237,8 +289,11 @@ pub fn consequences(
     recipes: &dyn Recipes,
 ) -> Vec<(IndicatorState, brushwork_link::Message)> {
     let signal = |pin| front.link.readings.signal(pin);
+    let reading = |channel| front.link.readings.get(channel);
+    let status = front.link.status.as_ref().map(|report| report.word);
+    let told = Told { identity: front.link.identity(), signal: &signal, reading: &reading, status };
     let unit = front.settings.unit();
-    unit.map(|unit| unit.look(|looked| recipes.consequences(looked, &signal))).unwrap_or_default()
+    unit.map(|unit| unit.look(|looked| recipes.consequences(looked, &told))).unwrap_or_default()
 }
 
 /// The settings themselves, as they stand in the lists.
@@ -247,6 +302,9 @@ fn settings_ui(ui: &mut Ui, front: &mut Connection, recipes: &dyn Recipes, recip
     let Some(table) = front.settings.unit().map(UnitSettings::table) else { return };
     let encoder_pin = |motor, phase| recipes.encoder_pin(table, motor, phase);
     let keys = recipe.keys(table, &answers, &encoder_pin);
+    if keys.is_empty() {
+        return;
+    }
     ui.add_space(6.0);
     let columns = Columns::fit(width, ui.spacing().item_spacing.x);
     rows::header_ui(ui, columns);

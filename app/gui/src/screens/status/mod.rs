@@ -11,7 +11,7 @@ use crate::model::{IndicatorState, Model};
 
 mod history;
 mod indicators;
-mod path;
+pub(crate) mod path;
 mod unit;
 
 pub(super) use history::history_ui;

@@ -4,7 +4,7 @@
 use egui::{Button, Frame, Label, Margin, RichText, Role, Stroke, Ui, WidgetInfo, vec2};
 
 use crate::command::{Command, Commands};
-use crate::family::path::{PathStep, Place};
+use crate::family::path::Place;
 use crate::focus::{Region, region_ui};
 use crate::messages::ButtonMessage;
 use crate::model::path::{Judged, Standing};
@@ -86,7 +86,7 @@ fn shown_ui(ui: &mut Ui, front: &mut Connection, judged: &Judged, commands: &mut
     let (standing, palette) = (judged.standing, Palette::of(ui));
     ui.add(Label::new(step.why()).wrap());
     ui.horizontal(|ui| {
-        let go = Button::new(RichText::new(place_text(front, judged.step)).strong());
+        let go = Button::new(RichText::new(place_text(front, judged.step.place)).strong());
         let go = ui.add(go);
         if std::mem::take(&mut front.path.wants_focus) {
             go.request_focus();
@@ -115,10 +115,10 @@ fn shown_ui(ui: &mut Ui, front: &mut Connection, judged: &Judged, commands: &mut
     });
 }
 
-/// What stands on the button that leads to a step.
-fn place_text(front: &Connection, step: PathStep) -> String {
+/// What stands on a button that leads somewhere.
+pub(crate) fn place_text(front: &Connection, place: Place) -> String {
     let family = front.family();
-    match step.place {
+    match place {
         Place::Settings(groups) => match front.first_row_of(groups) {
             Some(row) => ButtonMessage::GoTo { place: row.group.label().to_string() },
             None => ButtonMessage::GoToSettings,
@@ -136,7 +136,7 @@ fn place_text(front: &Connection, step: PathStep) -> String {
     }
 }
 
-fn place_command(front: &Connection, place: Place) -> Command {
+pub(crate) fn place_command(front: &Connection, place: Place) -> Command {
     match place {
         Place::Settings(groups) => match front.first_row_of(groups) {
             Some(row) => Command::ShowSettings(Section::of(row)),

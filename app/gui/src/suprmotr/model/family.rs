@@ -13,10 +13,12 @@ use brushwork_values::Motor;
 
 use super::{SuprMotrConnection, to_send};
 use crate::family::path::{BACK_UP, PathStep, Place, SAVE, ShownBy, Step};
+use crate::family::recipe::Recipes;
 use crate::family::{Ability, ActiveIndicator, Family, Figure, Figures, Known, Own, SettingsWords, Sliders};
 use crate::messages::NameMessage;
 use crate::model::{IndicatorInfo, IndicatorState, Screen, Simulated, Tab, state_of};
 use crate::suprmotr::messages::LineMessage;
+use crate::suprmotr::recipes::SuprMotrRecipes;
 use crate::tune::Loop;
 
 #[derive(Debug)]
@@ -72,6 +74,10 @@ impl Family for SuprMotr {
             Screen::Inputs => "Inputs and Outputs",
             other => other.title(),
         }
+    }
+
+    fn recipes(&self) -> Option<&'static dyn Recipes> {
+        Some(&SuprMotrRecipes)
     }
 
     fn figures(&self) -> &'static [Figures] {
