@@ -95,13 +95,13 @@ pub(super) fn fit_moves<L: Law>(
         return None;
     }
     let mut found: Vec<(f64, u32, Problem<'_, L>)> = Vec::new();
-    let mut starts = starts.to_vec();
+    let mut nearest = None;
     for rate_hz in rates_hz {
         let law = law.at_rate(*rate_hz);
-        let tries = starts.iter().map(|start| minimised(stretches, law, start.0));
+        // The next rate is near to this one; but where it was far from the true one, a fit may have ended in a valley of its own.
+        let tries = starts.iter().chain(&nearest).map(|start| minimised(stretches, law, start.0));
         let Some(best) = tries.flatten().min_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
-        // The next rate is near to this one.
-        starts = vec![Start(best.1.q)];
+        nearest = Some(Start(best.1.q));
         found.push((best.0, *rate_hz, best.1));
     }
     let best = found.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;

@@ -14,6 +14,9 @@ use std::time::Duration;
 /// How long a report is waited for beyond its bytes.
 const PATIENCE: Duration = Duration::from_millis(50);
 
+/// By how much longer than the quickest an exchange is one with a retry, or a late one, as in the program.
+const LATE: Duration = Duration::from_millis(12);
+
 impl Bench for SuprMotr {
     fn time(&self) -> Duration {
         self.now()
@@ -38,6 +41,8 @@ pub struct BoardLine {
     /// The line beneath.
     pub line: SimulatedLine<SuprMotr>,
     byte_time: Duration,
+    /// Of the readings of a position: one that took longer by [`LATE`] is not dated, and the program takes it for none.
+    quickest: Option<Duration>,
 }
 
 impl BoardLine {
@@ -53,7 +58,7 @@ impl BoardLine {
         let mut line = SimulatedLine::new(unit, specimen.link);
         line.idle(Duration::from_millis(500));
         let byte_time = Duration::from_secs_f64(10.0 / f64::from(specimen.unit.bits_per_second()));
-        Self { line, byte_time }
+        Self { line, byte_time, quickest: None }
     }
 
     /// Sends bytes and reads the report to a command. `up` of them are those up to the last of the command.
@@ -95,6 +100,14 @@ impl BoardLine {
                 break;
             }
             line.read_late();
+            if asked == Mnemonic::TP {
+                let took = line.now.saturating_sub(sent);
+                let least = self.quickest.map_or(took, |quickest| quickest.min(took));
+                self.quickest = Some(least);
+                if took > least + LATE {
+                    return Err(AxisError::Late);
+                }
+            }
             let down = down + bytes.len() - up;
             let at = worked_at((sent, line.now), (up, down), self.byte_time);
             return Ok((at, report));

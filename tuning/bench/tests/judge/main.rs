@@ -1,6 +1,7 @@
 //! The tuner against plants whose truth is known, small enough for every run of the tests.
 
 mod absolute;
+mod board_late;
 mod board_table;
 mod busy_host;
 mod late_host;
