@@ -24,8 +24,17 @@ impl App {
     /// Opens what was dropped on the window or chosen in the desktop's dialog.
     pub(super) fn take_files(&mut self, ctx: &Context) {
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
+        let mut recordings = 0;
         for file in dropped.iter().take(MOST_DROPPED) {
-            self.open_file(file.path());
+            // Of several recordings the first is looked at, and the others lie over it.
+            let is_recording = matches!(recognise(file.path()), Ok(KnownFile::Recording));
+            recordings += usize::from(is_recording);
+            if is_recording && recordings > 1 {
+                self.model.front.graph.files.lay_beneath(file.path());
+                self.model.files.remember(file.path());
+            } else {
+                self.open_file(file.path());
+            }
         }
         if dropped.len() > MOST_DROPPED {
             self.model.messages.warn(OpenFileMessage::TooMany { count: dropped.len(), most: MOST_DROPPED });

@@ -5,7 +5,7 @@
 use crate::graph::messages::GraphBarMessage;
 use crate::messages::{GraphMessage, WindowStatusMessage};
 use brushwork_link::Message;
-use std::collections::HashSet;
+use std::collections::{HashSet, VecDeque};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -61,6 +61,8 @@ pub struct GraphFiles {
     pub device: String,
     recording: Option<Recording>,
     loading: Option<Loading>,
+    /// Those that are read after it.
+    waiting: VecDeque<(PathBuf, OpenAs)>,
     working: Vec<Receiver<Said>>,
     dialog: Option<(Asked, FileDialog)>,
     /// Files that threads make or have made. A name is taken before its file is there.
@@ -112,6 +114,7 @@ impl Default for GraphFiles {
             device: String::new(),
             recording: None,
             loading: None,
+            waiting: VecDeque::new(),
             working: Vec::new(),
             dialog: None,
             begun: HashSet::new(),
@@ -169,6 +172,7 @@ impl GraphFiles {
     }
 
     pub fn give_up_loading(&mut self) {
+        self.waiting.clear();
         if let Some(loading) = self.loading.take() {
             loading.given_up.store(true, Ordering::Relaxed);
         }
@@ -192,6 +196,25 @@ impl GraphFiles {
     /// Begins to read a file.
     pub fn open(&mut self, path: &Path) {
         self.give_up_loading();
+        self.read(path, self.open_as);
+    }
+
+    /// Reads a file as a run beneath, after what is being read.
+    pub fn lay_beneath(&mut self, path: &Path) {
+        self.waiting.push_back((path.to_owned(), OpenAs::Run));
+        if self.loading.is_none() {
+            self.open_next();
+        }
+    }
+
+    /// Begins to read what waits.
+    fn open_next(&mut self) {
+        if let Some((path, open_as)) = self.waiting.pop_front() {
+            self.read(&path, open_as);
+        }
+    }
+
+    fn read(&mut self, path: &Path, open_as: OpenAs) {
         let (sender, answer) = bounded(1);
         let (rows, given_up) = (Arc::new(AtomicU64::new(0)), Arc::new(AtomicBool::new(false)));
         let (path, counted, stop) = (path.to_owned(), rows.clone(), given_up.clone());
@@ -202,7 +225,7 @@ impl GraphFiles {
         };
         // Without a thread the channel is closed, which is told as a failure.
         let _ = work::spawn("read recording", read);
-        self.loading = Some(Loading { name, open_as: self.open_as, rows, given_up, answer });
+        self.loading = Some(Loading { name, open_as, rows, given_up, answer });
     }
 
     fn free_path(&mut self, extension: &str) -> PathBuf {

@@ -12,6 +12,8 @@ messages! {
         Paused { span: String, shown: String } "Graph, paused, of {span}: {shown}",
         AtTrigger { span: String, shown: String } "Graph of {span} at the trigger: {shown}",
         Live { span: String, shown: String } "Live graph of the last {span}: {shown}",
+        RunLine { number: usize, name: String, label: String } "{number} {name}: {label}",
+        Beneath { runs: String } ". Earlier runs: {runs}",
         LastMark { mark: String } ". Last mark: {mark}",
         Cursor { name: &'static str } ". Cursor {name} is moved by the arrow keys",
     }

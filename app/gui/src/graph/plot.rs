@@ -4,7 +4,7 @@
 //! the selected channel's figures stand at the side.
 //!
 //! Dragging the plot scrolls, dragging it with the second button zooms into a box, dragging the time axis zooms. The wheel zooms
-//! time about the pointer, with Shift it scrolls, with Ctrl it changes the selected channel's scale. Cursors, zero marks, the
+//! time about the pointer, with Shift it scrolls, with Ctrl it changes the selected channel's scale. Cursors, zero marks, earlier runs, the
 //! trigger's level and its place are dragged by their handles. With keyboard focus the plot is moved by keys ([`KEYS`]).
 
 use std::ops::RangeInclusive;
@@ -23,6 +23,7 @@ use super::action::GraphAction;
 use super::picture::draw::{self, Curve, Scene};
 use super::picture::frame::{AXIS_WIDTH, FLAGS, Frame, GUTTER, RIGHT, TIMES};
 use super::picture::{self, axes, paint};
+use super::runs::Run;
 use super::{Cursors, LiveGraph, Scale, Sheet, TriggerMode};
 use crate::graph::messages::PlotMessage;
 use crate::theme::Palette;
@@ -45,6 +46,8 @@ enum Grip {
     Zero(usize),
     Level,
     TriggerPlace,
+    /// An earlier run, by its place.
+    Run(usize),
     Axis,
     Time,
 }
@@ -268,6 +271,10 @@ impl PlotItem for Drawn {
 fn over_ui(ui: &Ui, graph: &LiveGraph, response: &Response, frame: &Frame, curves: &[Rc<Curve>]) {
     let scene = scene(ui, graph, *frame);
     paint(&ui.painter().with_clip_rect(frame.outer), scene.over(curves));
+    for (place, (rect, _, text)) in scene.run_rows().into_iter().enumerate() {
+        let row = ui.interact(rect, response.id.with(("run row", place)), Sense::hover());
+        row.widget_info(|| WidgetInfo::labeled(Role::Label, true, &text));
+    }
     if response.has_focus() {
         let ring = Stroke::new(2.0, scene.palette.accent);
         ui.painter().rect_stroke(frame.plot, 0.0, ring, egui::StrokeKind::Outside);
@@ -342,7 +349,7 @@ fn pointer_ui(ui: &Ui, graph: &LiveGraph, response: &Response, frame: &Frame) {
         return;
     }
     ui.ctx().set_cursor_icon(match grip_at(graph, frame, at) {
-        Some(Grip::Cursor(_) | Grip::TriggerPlace) => CursorIcon::ResizeHorizontal,
+        Some(Grip::Cursor(_) | Grip::TriggerPlace | Grip::Run(_)) => CursorIcon::ResizeHorizontal,
         Some(Grip::Zero(_) | Grip::Level | Grip::Axis) => CursorIcon::ResizeVertical,
         Some(Grip::Time) => CursorIcon::Grab,
         None => CursorIcon::Default,
@@ -377,6 +384,11 @@ fn mark_at(sheet: &Sheet, frame: &Frame, at: Pos2) -> Option<String> {
 fn grip_at(graph: &LiveGraph, frame: &Frame, at: Pos2) -> Option<Grip> {
     let sheet = graph.sheet();
     let plot = frame.plot;
+    let runs = graph.runs.iter().enumerate().rev().filter(|(_, run)| run.shown);
+    let is_at = |run: &(usize, &Run)| draw::run_handle(frame, sheet, *run, graph.align).contains(at);
+    if let Some((run, _)) = runs.into_iter().find(is_at) {
+        return Some(Grip::Run(run));
+    }
     if sheet.cursors.on && plot.contains(at) {
         let distance =
             |which: usize| (frame.x(sheet.cursor_s(which)).clamp(plot.left(), plot.right()) - at.x).abs();
@@ -434,7 +446,7 @@ fn drag_ui(ui: &Ui, graph: &mut LiveGraph, [outer, plot]: [&Response; 2], frame:
         match grip {
             Some(Grip::Zero(channel)) => graph.sheet_mut().selected = channel,
             Some(Grip::Cursor(which)) => graph.sheet_mut().cursors.active = which,
-            Some(Grip::Level | Grip::TriggerPlace | Grip::Axis | Grip::Time) | None => {}
+            Some(Grip::Level | Grip::TriggerPlace | Grip::Run(_) | Grip::Axis | Grip::Time) | None => {}
         }
     }
     let held = ui.data(|data| data.get_temp::<Option<Grip>>(key)).flatten();
@@ -455,6 +467,13 @@ fn drag_ui(ui: &Ui, graph: &mut LiveGraph, [outer, plot]: [&Response; 2], frame:
 
 /// Moves what is held to where the pointer is.
 fn pull(graph: &mut LiveGraph, grip: Grip, at: Pos2, by: Vec2, frame: &Frame) {
+    if let Grip::Run(run) = grip {
+        let by_s = f64::from(by.x / frame.plot.width()) * (frame.end_s - frame.start_s);
+        if let Some(run) = graph.runs.get_mut(run) {
+            run.shift_s += by_s;
+        }
+        return;
+    }
     let sheet = graph.sheet_mut();
     let up = f64::from(-by.y / frame.plot.height());
     match grip {
@@ -487,8 +506,8 @@ fn pull(graph: &mut LiveGraph, grip: Grip, at: Pos2, by: Vec2, frame: &Frame) {
             let settings = *sheet.trigger.settings();
             sheet.trigger.set(super::trigger::TriggerSettings { pre: part, ..settings });
         }
-        // The plot scrolls by itself.
-        Grip::Time => {}
+        // The plot scrolls by itself; a run has moved.
+        Grip::Time | Grip::Run(_) => {}
     }
 }
 
@@ -592,6 +611,10 @@ fn spoken(graph: &LiveGraph) -> String {
     let (start_s, end_s) = sheet.window();
     if let Some(mark) = sheet.track.marks.between(start_s, end_s).next_back() {
         text += &PlotMessage::LastMark { mark: mark.text.clone() }.to_string();
+    }
+    let beneath: Vec<&str> = graph.runs.iter().filter(|run| run.shown).map(|run| run.name.as_str()).collect();
+    if !beneath.is_empty() {
+        text += &PlotMessage::Beneath { runs: beneath.join(", ") }.to_string();
     }
     if sheet.cursors.on {
         text += &PlotMessage::Cursor { name: Cursors::NAMES[sheet.cursors.active] }.to_string();

@@ -16,16 +16,19 @@ pub enum Align {
     Trigger,
     /// The first command that moves a motor, and the newest such command in view.
     Command,
+    /// The first mark that a person has left, and the first one in view.
+    Mark,
 }
 
 impl Align {
-    pub const ALL: [Self; 3] = [Self::Start, Self::Trigger, Self::Command];
+    pub const ALL: [Self; 4] = [Self::Start, Self::Trigger, Self::Command, Self::Mark];
 
     pub const fn word(self) -> &'static str {
         match self {
             Self::Start => "Start",
             Self::Trigger => "Trigger",
             Self::Command => "Command",
+            Self::Mark => "Mark",
         }
     }
 }
@@ -48,6 +51,11 @@ impl Run {
         Self { name, track, shown: true, shift_s: 0.0, memos, found: Cell::new(None) }
     }
 
+    /// Where what it is aligned by stands in the picture of `sheet`.
+    pub fn stands_at_s(&self, sheet: &Sheet, align: Align) -> f64 {
+        anchor_of(sheet, align) + self.shift_s
+    }
+
     /// What has to be added to the run's times to draw it into `sheet`.
     pub fn offset_s(&self, sheet: &Sheet, align: Align) -> f64 {
         let own_s = self.anchor_s(sheet.trigger.settings(), align, sheet);
@@ -58,7 +66,8 @@ impl Run {
         let start_s = self.track.began_s.unwrap_or(0.0);
         match align {
             Align::Start => start_s,
-            Align::Command => first_command_s(&self.track).unwrap_or(start_s),
+            Align::Command => first_s(&self.track, MarkKind::Drive).unwrap_or(start_s),
+            Align::Mark => first_s(&self.track, MarkKind::Note).unwrap_or(start_s),
             Align::Trigger => self.crossing_s(trigger, sheet).unwrap_or(start_s),
         }
     }
@@ -70,7 +79,7 @@ impl Run {
             return found;
         }
         let found = match trigger.source {
-            TriggerSource::Command => first_command_s(&self.track),
+            TriggerSource::Command => first_s(&self.track, MarkKind::Drive),
             TriggerSource::Channel(channel) => {
                 let key = sheet.track.channels.get(channel).map(|info| info.key.as_str());
                 let own = key.and_then(|key| self.track.channel_of_key(key));
@@ -82,20 +91,34 @@ impl Run {
     }
 }
 
-fn first_command_s(track: &Track) -> Option<f64> {
-    track.marks.iter().find(|mark| mark.kind == MarkKind::Drive).map(|mark| mark.at_s)
+fn first_s(track: &Track, kind: MarkKind) -> Option<f64> {
+    track.marks.iter().find(|mark| mark.kind == kind).map(|mark| mark.at_s)
 }
 
-/// What of the present picture the runs are laid on.
+/// What of the present picture the runs are laid on. In a recording that is the same wherever it is looked at.
 fn anchor_of(sheet: &Sheet, align: Align) -> f64 {
+    if let Some(from_s) = sheet.whole_from_s {
+        let found = match align {
+            Align::Start => None,
+            Align::Trigger => match sheet.trigger.settings().source {
+                TriggerSource::Command => first_s(&sheet.track, MarkKind::Drive),
+                TriggerSource::Channel(channel) => {
+                    first_crossing_s(&sheet.track, channel, sheet.trigger.settings(), f64::NEG_INFINITY)
+                }
+            },
+            Align::Command => first_s(&sheet.track, MarkKind::Drive),
+            Align::Mark => first_s(&sheet.track, MarkKind::Note),
+        };
+        return found.unwrap_or(from_s);
+    }
     let (start_s, end_s) = sheet.window();
+    let is = |kind: MarkKind| move |mark: &&super::Mark| mark.kind == kind;
+    let mut marks = sheet.track.marks.between(start_s, end_s);
     let found = match align {
         Align::Start => None,
         Align::Trigger => sheet.shot_s(),
-        Align::Command => {
-            let mut marks = sheet.track.marks.between(start_s, end_s).rev();
-            marks.find(|mark| mark.kind == MarkKind::Drive).map(|mark| mark.at_s)
-        }
+        Align::Command => marks.rev().find(is(MarkKind::Drive)).map(|mark| mark.at_s),
+        Align::Mark => marks.find(is(MarkKind::Note)).map(|mark| mark.at_s),
     };
     found.unwrap_or(start_s)
 }

@@ -67,6 +67,8 @@ pub struct Sheet {
     pub selected: usize,
     pub trigger: Trigger,
     pub cursors: Cursors,
+    /// Where it begins, if it is a whole recording and not what comes in: earlier runs are laid on that, wherever the picture stands.
+    pub whole_from_s: Option<f64>,
     span_s: f64,
     held_end_s: Option<f64>,
     memos: RefCell<Vec<Memo>>,
@@ -83,6 +85,7 @@ impl Sheet {
             selected,
             trigger: Trigger::new(TriggerSource::Channel(selected)),
             cursors: Cursors::default(),
+            whole_from_s: None,
             span_s: 10.0,
             held_end_s: None,
         }

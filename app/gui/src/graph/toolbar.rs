@@ -280,6 +280,11 @@ fn record_ui(ui: &mut Ui, graph: &mut LiveGraph, is_narrow: bool) {
 
 fn more_ui(ui: &mut Ui, graph: &mut LiveGraph) {
     use GraphAction as A;
+    // Where there are runs, they are what is compared, and are not looked for.
+    if !graph.runs.is_empty() {
+        runs_ui(ui, graph);
+        ui.separator();
+    }
     heading_ui(ui, "View");
     ui.horizontal_wrapped(|ui| {
         for (text, action) in [
@@ -330,8 +335,10 @@ fn more_ui(ui: &mut Ui, graph: &mut LiveGraph) {
     ui.separator();
     open_ui(ui, graph);
     ui.separator();
-    runs_ui(ui, graph);
-    ui.separator();
+    if graph.runs.is_empty() {
+        runs_ui(ui, graph);
+        ui.separator();
+    }
     ui.collapsing("Marks", |ui| marks_ui(ui, graph));
     ui.collapsing("Keys", |ui| ui.label(KEYS));
 }
@@ -416,6 +423,8 @@ fn runs_ui(ui: &mut Ui, graph: &mut LiveGraph) {
         ui.horizontal(|ui| {
             ui.checkbox(&mut run.shown, format!("{}: {}", number + 1, run.name));
             let name = GraphBarMessage::Shift { number: number + 1 }.to_string();
+            ui.label("shift")
+                .on_hover_text("Later by so much; its numbered handle in the graph can be dragged too");
             let any = f64::NEG_INFINITY..=f64::INFINITY;
             Numeric { name: &name, unit: "s", range: any, decimals: 3, step: 0.01, width: 80.0 }
                 .ui(ui, &mut run.shift_s);

@@ -27,7 +27,8 @@ impl DroppedFile for Dropped {
     }
 }
 
-fn drop_on(bench: &mut Bench, paths: &[&Path]) {
+/// Drops files on the window.
+pub fn drop_on(bench: &mut Bench, paths: &[&Path]) {
     let files = paths.iter().map(|path| Arc::new(Dropped((*path).to_owned())) as _);
     bench.harness.input_mut().dropped_files = files.collect();
     bench.harness.step();

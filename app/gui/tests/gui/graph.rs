@@ -514,3 +514,94 @@ fn the_large_graph_takes_the_screen_and_leaves_the_arm_switch() {
     assert!(plot(&bench).height() > before + 60.0);
     assert!(bench.sees("Arm"), "the arm switch is there");
 }
+
+/// Records two seconds in which motor 1 is told a duty after a while, with a mark at that moment; the file.
+fn record_step(bench: &mut Bench, folder: &Path, (wait_ms, duty): (u64, &str), count: usize) -> PathBuf {
+    let before = whole_files(folder);
+    bench.press("Record to CSV");
+    bench.pass_ms(wait_ms);
+    bench.arm();
+    graph(bench).act(brushwork_gui::graph::GraphAction::AddNote);
+    bench.set_duty(Motor::M1, duty);
+    bench.pass_ms(1500);
+    bench.press("Stop recording");
+    let after = files_in(bench, folder, count);
+    bench.press("Stop All");
+    bench.pass_ms(1500);
+    after.into_iter().find(|path| !before.contains(path)).expect("a new file")
+}
+
+#[test]
+fn several_recordings_lie_over_each_other_by_start_or_mark_and_are_shifted_by_hand() {
+    let mut bench = bench();
+    let folder = in_folder(&mut bench);
+    let steps = [(500, "30"), (900, "50"), (1300, "20")];
+    let files: Vec<PathBuf> = steps
+        .into_iter()
+        .enumerate()
+        .map(|(made, step)| record_step(&mut bench, folder.path(), step, made + 1))
+        .collect();
+    let names: Vec<String> =
+        files.iter().map(|path| path.file_name().expect("it has one").display().to_string()).collect();
+    let paths: Vec<&Path> = files.iter().map(PathBuf::as_path).collect();
+    crate::files::drop_on(&mut bench, &paths);
+    bench
+        .until("all of them are read", |bench| graph(bench).opened.is_some() && graph(bench).runs.len() == 2);
+    assert!(bench.sees_part(&format!("Graph of the recording {}", names[0])));
+    assert!(bench.sees_part(&format!(". Earlier runs: {}, {}", names[1], names[2])));
+    assert!(bench.sees(&format!("1 {}: M1 PWM", names[1])), "each line is named by its recording");
+    assert!(bench.sees(&format!("2 {}: M1 PWM", names[2])));
+
+    // Where the first sample and where the note of each stands in the picture.
+    let places = |bench: &mut Bench| {
+        let graph = graph(bench);
+        let sheet = graph.sheet();
+        let note = |track: &brushwork_gui::graph::Track| {
+            track.marks.iter().find(|mark| mark.kind == MarkKind::Note).expect("each has one").at_s
+        };
+        let began = |track: &brushwork_gui::graph::Track| track.began_s.expect("it has samples");
+        let mut all = vec![(began(&sheet.track), note(&sheet.track))];
+        all.extend(graph.runs.iter().map(|run| {
+            let offset_s = run.offset_s(sheet, graph.align);
+            (began(&run.track) + offset_s, note(&run.track) + offset_s)
+        }));
+        all
+    };
+    let by_start = places(&mut bench);
+    assert!(by_start.iter().all(|(began_s, _)| (began_s - by_start[0].0).abs() < 1e-9), "{by_start:?}");
+    assert!(by_start[1].1 - by_start[0].1 > 0.2 && by_start[2].1 - by_start[1].1 > 0.2, "{by_start:?}");
+    // Looking elsewhere does not part them.
+    graph(&mut bench).sheet_mut().pan(0.4);
+    assert_eq!(places(&mut bench), by_start);
+    graph(&mut bench).sheet_mut().look_at_all();
+
+    bench.press("More");
+    bench.press("Mark");
+    assert_eq!(graph(&mut bench).align, Align::Mark);
+    bench.key(Key::Escape);
+    let by_mark = places(&mut bench);
+    assert!(by_mark.iter().all(|(_, note_s)| (note_s - by_mark[0].1).abs() < 1e-9), "{by_mark:?}");
+
+    // The handle of the second run stands above that of the first; a tenth of the width is a tenth of the time.
+    let plot_of = |bench: &mut Bench| {
+        let window = graph(bench).sheet().window();
+        brushwork_gui::graph::picture::frame::Frame::new(plot(bench), window)
+    };
+    let frame = plot_of(&mut bench);
+    let handle = {
+        let graph = graph(&mut bench);
+        let run = (1, &graph.runs[1]);
+        brushwork_gui::graph::picture::draw::run_handle(&frame, graph.sheet(), run, graph.align)
+    };
+    let by = vec2(frame.plot.width() * 0.1, 0.0);
+    drag(&mut bench, handle.center(), handle.center() + by);
+    let shifts: Vec<f64> = graph(&mut bench).runs.iter().map(|run| run.shift_s).collect();
+    let tenth_s = (frame.end_s - frame.start_s) * 0.1;
+    assert!(shifts[0] == 0.0 && (shifts[1] / tenth_s - 1.0).abs() < 0.1, "{shifts:?} of {tenth_s}");
+    assert_eq!(plot_of(&mut bench), frame, "the picture itself has not moved");
+    bench.press("More");
+    bench.enter("Shift of run 1", "0.25");
+    bench.pass_ms(200);
+    let shifted = places(&mut bench);
+    assert!((shifted[1].1 - by_mark[1].1 - 0.25).abs() < 1e-9, "typed: {shifted:?}");
+}

@@ -73,6 +73,7 @@ impl LiveGraph {
         };
         let (name, open_as) = (loading.name.clone(), loading.open_as);
         self.files.loading = None;
+        self.files.open_next();
         match answer {
             Err(sentence) => said.push((Gravity::Error, sentence)),
             Ok(loaded) => {
@@ -90,6 +91,7 @@ impl LiveGraph {
     fn show_recording(&mut self, name: String, loaded: load::Loaded) {
         let load::Loaded { track, began, note, left_out } = loaded;
         let mut sheet = Sheet::new(track);
+        sheet.whole_from_s = sheet.track.began_s;
         let shown_live = |key: &str| self.live.channels.iter().any(|live| live.shown && live.info.key == key);
         let has_data =
             |index: usize| !sheet.track.history.summary(index, f64::NEG_INFINITY, f64::INFINITY).0.is_empty();

@@ -8,6 +8,7 @@ use egui::{Align2, Color32, Pos2, Rect, Vec2, pos2, vec2};
 use super::axes::{self, Zero};
 use super::frame::{FLAGS, Frame, GUTTER};
 use super::{Element, Layer, Picture, line_of};
+use crate::graph::messages::PlotMessage;
 use crate::graph::runs::{Align, Run};
 use crate::graph::scale::{DIVISIONS, Scale};
 use crate::graph::trace::{Columns, Trace, View};
@@ -20,6 +21,9 @@ const LABEL_HEIGHT: f32 = 17.0;
 /// Overflow arrows and flags of one kind are not nearer to each other than this.
 const SPACING: f32 = 26.0;
 const SMALL: f32 = 11.0;
+/// Height of a row of the legend of earlier runs, and of a handle.
+const RUN_ROW: f32 = 16.0;
+const HANDLE: Vec2 = vec2(38.0, 14.0);
 
 /// What is drawn, and how.
 pub struct Scene<'a> {
@@ -55,6 +59,16 @@ pub fn zero_s(sheet: &Sheet, is_recording: bool) -> f64 {
         Zero::Began => sheet.track.began_s.unwrap_or(0.0),
         Zero::Now => sheet.newest_s(),
     }
+}
+
+/// The handle by which a run is dragged in time: near the bottom of the plot, where what it is aligned by stands, each above the one before.
+pub fn run_handle(frame: &Frame, sheet: &Sheet, (number, run): (usize, &Run), align: Align) -> Rect {
+    let plot = frame.plot;
+    let half = HANDLE.x * 0.5;
+    let x = frame.x(run.stands_at_s(sheet, align));
+    let x = x.clamp(plot.left() + half, (plot.right() - half).max(plot.left() + half));
+    let y = plot.bottom() - 28.0 - HANDLE.y * (number as f32 + 0.5) - 2.0 * number as f32;
+    Rect::from_center_size(pos2(x, y), HANDLE)
 }
 
 /// The line of a channel, of now or of an earlier run.
@@ -127,6 +141,7 @@ impl Scene<'_> {
             }
         }
         inside.extend(arrows);
+        self.runs_legend(&mut inside);
         self.trigger(&mut inside, &mut around);
         self.cursors(&mut inside);
         self.zero_marks(&mut around);
@@ -148,8 +163,7 @@ impl Scene<'_> {
                 memos[own].make_room(columns.count());
                 let mut trace = Trace::remembering(&run.track.history, own, &columns, &mut memos[own]);
                 trace.lines.iter_mut().flatten().for_each(|point| point[0] += offset_s);
-                let color =
-                    color_of(self.sheet, self.palette, channel).lerp_to_gamma(self.palette.ground, 0.45);
+                let color = self.run_color(number, channel);
                 let (lines, scale) = (trace.lines, shown.scale);
                 curves.push(Rc::new(Curve {
                     channel,
@@ -249,6 +263,97 @@ impl Scene<'_> {
         let at = pos2(self.frame.outer.left(), self.frame.outer.top() + FLAGS * 0.5 - 4.0);
         let color = color_of(self.sheet, self.palette, self.sheet.selected);
         around.push(self.words(at, Align2::LEFT_CENTER, text, color));
+    }
+
+    /// The colour of a run's line: one that no channel of the picture has, a little fainter.
+    pub fn run_color(&self, run: usize, channel: usize) -> Color32 {
+        let taken = |channel: &usize| {
+            let chosen = self.sheet.channels[*channel].color.unwrap_or(*channel);
+            chosen % self.palette.traces.len()
+        };
+        let mut shown = self.sheet.shown();
+        shown.sort_unstable();
+        let taken_places: Vec<usize> = shown.iter().map(taken).collect();
+        let free: Vec<usize> =
+            (0..self.palette.traces.len()).filter(|place| !taken_places.contains(place)).collect();
+        let place = shown.iter().position(|other| *other == channel).unwrap_or(0);
+        let color = match free.get((run * shown.len() + place) % free.len().max(1)) {
+            Some(place) => self.palette.traces[*place],
+            None => color_of(self.sheet, self.palette, channel),
+        };
+        color.lerp_to_gamma(self.palette.ground, 0.2)
+    }
+
+    /// Which line of an earlier run is which: its colour and its words.
+    pub fn run_entries(&self) -> Vec<(Color32, String)> {
+        let mut shown = self.sheet.shown();
+        shown.sort_unstable();
+        let runs = self.runs.iter().enumerate().filter(|(_, run)| run.shown);
+        runs.flat_map(|(number, run)| {
+            let there = shown.iter().filter(|channel| {
+                run.track.channel_of_key(&self.sheet.channels[**channel].info.key).is_some()
+            });
+            let entry = |channel: &usize| {
+                let label = self.sheet.channels[*channel].info.label.clone();
+                let words = PlotMessage::RunLine { number: number + 1, name: run.name.clone(), label };
+                (self.run_color(number, *channel), words.to_string())
+            };
+            there.map(entry).collect::<Vec<_>>()
+        })
+        .collect()
+    }
+
+    /// Where the rows of the legend of earlier runs stand, from the top right corner down; as many as there is room for.
+    pub fn run_rows(&self) -> Vec<(Rect, Color32, String)> {
+        let plot = self.frame.plot;
+        let most = ((plot.height() - 2.0 * RUN_ROW) / RUN_ROW).max(0.0) as usize;
+        let entries: Vec<_> = self.run_entries().into_iter().take(most).collect();
+        let longest = entries.iter().map(|(_, text)| text.chars().count()).max().unwrap_or(0);
+        let width = (longest as f32 * 5.6 + 30.0).min(plot.width() * 0.6);
+        let row = |(place, (color, text)): (usize, (Color32, String))| {
+            let top = plot.top() + 20.0 + place as f32 * RUN_ROW;
+            let rect = Rect::from_min_max(
+                pos2(plot.right() - 6.0 - width, top),
+                pos2(plot.right() - 6.0, top + RUN_ROW),
+            );
+            (rect, color, text)
+        };
+        entries.into_iter().enumerate().map(row).collect()
+    }
+
+    /// The legend of earlier runs, and the handle of each by which it is dragged.
+    fn runs_legend(&self, inside: &mut Vec<Element>) {
+        for (rect, color, text) in self.run_rows() {
+            inside.push(Element::Box { rect, color: self.palette.panel.gamma_multiply(0.85) });
+            let y = rect.center().y;
+            let points = [pos2(rect.left() + 4.0, y), pos2(rect.left() + 20.0, y)];
+            inside.push(Element::Dashes { points, color, width: 2.0 });
+            let at = pos2(rect.left() + 25.0, y);
+            inside.push(self.words(at, Align2::LEFT_CENTER, text, self.palette.text));
+        }
+        for (number, run) in self.runs.iter().enumerate().filter(|(_, run)| run.shown) {
+            let handle = run_handle(&self.frame, self.sheet, (number, run), self.align);
+            let middle = handle.center();
+            inside.push(Element::Polygon {
+                points: vec![
+                    pos2(handle.left(), middle.y),
+                    pos2(handle.left() + 5.0, handle.top()),
+                    pos2(handle.right() - 5.0, handle.top()),
+                    pos2(handle.right(), middle.y),
+                    pos2(handle.right() - 5.0, handle.bottom()),
+                    pos2(handle.left() + 5.0, handle.bottom()),
+                ],
+                color: self.palette.weak_text,
+            });
+            inside.push(Element::Text {
+                at: middle,
+                anchor: Align2::CENTER_CENTER,
+                text: NameMessage::RunLine { number: number + 1 }.to_string(),
+                size: 9.5,
+                color: self.palette.ground,
+                figures: false,
+            });
+        }
     }
 
     /// The number of a run, beside the first of its points in view.
