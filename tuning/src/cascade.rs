@@ -16,6 +16,7 @@ pub const CASCADE: Facts = Facts {
     can_be_probed: false,
     writes_at_rest: false,
     keeps_travel: false,
+    longest_move_counts: f64::INFINITY,
     speed_step: 1.0,
     usual_lag: Lag { filter_s: 0.004, delay_ticks: 1.0 },
     longest_lag: Lag { filter_s: 0.010, delay_ticks: 1.0 },

@@ -132,6 +132,9 @@ causes! {
     WrappingEncoder "An absolute encoder that wraps has no speed that a loop could use. Tune the position instead.";
     /// The encoder is too coarse, or the axis too slow, for the polls.
     TooCoarse "The encoder gives too few counts for this axis. A finer one is needed.";
+    /// The longest moves that the controller takes tell too little.
+    MovesTooShort "The longest move that this controller takes at once (its following error, SM) is over too soon to measure the motor: the encoder \
+        is too fine for it. A coarser encoder, or one behind the gear, makes the moves longer.";
     /// The model does not explain the record.
     PoorFit "The motion does not follow the model of a motor. Look for slipping parts, a loose encoder or noise.";
     /// The two directions differ by more than a quarter.
@@ -236,6 +239,7 @@ impl Cause {
                 | Self::TravelLimit
                 | Self::NarrowTravel
                 | Self::TooCoarse
+                | Self::MovesTooShort
                 | Self::StepUnclear
                 | Self::NoLimitCycle
                 | Self::PoorFit

@@ -28,6 +28,8 @@ pub struct Facts {
     pub writes_at_rest: bool,
     /// The controller itself can keep the motor within its travel.
     pub keeps_travel: bool,
+    /// The longest move that the controller takes at once, counts: it lets the motor go where the position lags further behind than this.
+    pub longest_move_counts: f64,
     /// The step of a speed command, counts/s.
     pub speed_step: f64,
     /// The lag that is assumed before it is measured, and where it cannot be.

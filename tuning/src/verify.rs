@@ -416,7 +416,8 @@ pub(crate) fn try_position<L: Law>(
     task: &Task<L>,
     design: &Design,
 ) -> Result<Measured, Cause> {
-    let mut step = position_step(task.plant.gain_counts_per_s, task.plant.tau_s);
+    let step = position_step(task.plant.gain_counts_per_s, task.plant.tau_s);
+    let mut step = step.min(guard.facts.longest_move_counts);
     if let Excitation::Window(width) = request.excitation {
         step = step.min(0.35 * width);
     }

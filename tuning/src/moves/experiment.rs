@@ -22,9 +22,6 @@ const REVERSED_COUNTS: f64 = 6.0;
 /// How long a new gain is watched before the axis is moved with it, s, and the counts that it may settle by.
 const HOLD_S: f64 = 0.1;
 const HELD_COUNTS: f64 = 6.0;
-/// Longest stroke without a travel, counts: an encoder of some thousand counts a turn turns a little, and less than the following error that
-/// boards leave the factory with.
-const LONGEST_COUNTS: f64 = 6_000.0;
 /// Share of the room on the farther side that a stroke may use.
 const ROOM_SHARE: f64 = 0.4;
 /// Polls within so many counts of each other are a standstill.
@@ -81,9 +78,10 @@ impl Ground {
         excitation: Excitation,
     ) -> Result<Self, Cause> {
         guard.poll(false)?;
+        let longest = guard.facts.longest_move_counts;
         let widest = match excitation {
-            Excitation::Free => LONGEST_COUNTS,
-            Excitation::Window(width) => (ROOM_SHARE * width).min(LONGEST_COUNTS),
+            Excitation::Free => longest,
+            Excitation::Window(width) => (ROOM_SHARE * width).min(longest),
         };
         let start = guard.points.last().map_or(0.0, |point| point.counts);
         let Some((low, high)) = guard.travel_counts() else {

@@ -74,7 +74,7 @@ pub(crate) fn by_moves<L: Law>(
     guard.progress("Measuring the lag and the rate of the loop");
     let found = stiff_strokes(guard, request, &ground, found, &mut stretches)?;
     report.fit = Some(found.fit);
-    believe(&found)?;
+    believe(&found, ground.most >= guard.facts.longest_move_counts)?;
     report.seconds.0 = guard.now_s();
     let task = task_of(request, &found);
     report.qpps = Some(task.qpps);
@@ -238,11 +238,15 @@ fn reach<L: Law>(stretch: &Stretch<L>) -> f64 {
     counts().fold(f64::NEG_INFINITY, f64::max) - counts().fold(f64::INFINITY, f64::min)
 }
 
-fn believe(found: &Found) -> Result<(), Cause> {
+fn believe(found: &Found, is_longest: bool) -> Result<(), Cause> {
     if found.fit.chi_square > WORST_CHI_SQUARE {
         return Err(Cause::PoorFit);
     }
-    if found.fit.sd_ln_tau > LOOSEST_TAU { Err(Cause::TooCoarse) } else { Ok(()) }
+    match found.fit.sd_ln_tau > LOOSEST_TAU {
+        true if is_longest => Err(Cause::MovesTooShort),
+        true => Err(Cause::TooCoarse),
+        false => Ok(()),
+    }
 }
 
 /// What gains are designed for.

@@ -48,6 +48,7 @@ static FACTS: Facts = Facts {
     can_be_probed: false,
     writes_at_rest: true,
     keeps_travel: true,
+    longest_move_counts: f64::INFINITY,
     speed_step: SPEED_STEP_COUNTS_PER_S,
     usual_lag: Lag { filter_s: 0.0, delay_ticks: 0.5 },
     longest_lag: Lag { filter_s: 0.0, delay_ticks: 1.5 },

@@ -27,6 +27,10 @@ use profile::Profile;
 /// Turns in a second that the loop may have: from a slow one to that of an LM629 (341 us) and beyond.
 const RATES_HZ: [u32; 9] = [250, 354, 500, 707, 1_000, 1_414, 2_000, 2_828, 4_000];
 
+/// Longest move, counts, at the pace of a run, which leaves the whole move to lag behind: less than the following error (SM) that boards leave
+/// the factory with. Nothing tells SM.
+const LONGEST_MOVE_COUNTS: f64 = 6_000.0;
+
 /// One loop on the position. Assumed: what it computes it gives in the same turn; half a turn for the winding.
 static FACTS: Facts = Facts {
     has_duty: false,
@@ -34,6 +38,7 @@ static FACTS: Facts = Facts {
     can_be_probed: false,
     writes_at_rest: true,
     keeps_travel: false,
+    longest_move_counts: LONGEST_MOVE_COUNTS,
     speed_step: 1.0,
     usual_lag: Lag { filter_s: 0.0, delay_ticks: 0.5 },
     longest_lag: Lag { filter_s: 0.0, delay_ticks: 1.5 },
