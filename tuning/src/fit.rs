@@ -148,7 +148,7 @@ impl<'a> Problem<'a> {
             Actuation { slew_per_s: self.record.actuation.slew_per_s * ramp(q), ..self.record.actuation };
         self.record.predict_with(&actuation, (&model, offset), &mut predicted, &mut volts);
         let errors: Vec<f64> = self.record.counts.iter().zip(&predicted).map(|((_, y), p)| y - p).collect();
-        let steps = self.innovations(&errors);
+        let steps = innovations(&errors, &self.noise);
         let readings = self.record.volts.iter().zip(&volts).map(|((_, v), p)| soft((v - p) / VOLTS_SIGMA));
         let prior = [
             model.load_duty / LOAD_PRIOR,
@@ -159,22 +159,6 @@ impl<'a> Problem<'a> {
             q.get(7).zip(self.limit).map_or(0.0, |(ln, limit)| (ln - limit.ln()) / LIMIT_PRIOR),
         ];
         DVector::from_vec(steps.into_iter().chain(readings).chain(prior).collect())
-    }
-
-    /// What each error has that the ones before it do not tell, in standard deviations: a scalar Kalman filter follows the drift.
-    fn innovations(&self, errors: &[f64]) -> Vec<f64> {
-        let Some(&first) = errors.first() else { return Vec::new() };
-        let (mut drift, mut variance) = (first, self.noise[0].0);
-        let follow = |(error, (white, walk)): (&f64, &(f64, f64))| {
-            let before = variance + walk;
-            let spread = before + white;
-            let innovation = error - drift;
-            let share = before / spread;
-            drift += share * innovation;
-            variance = (1.0 - share) * before;
-            soft(innovation / spread.sqrt())
-        };
-        errors.iter().zip(&self.noise).skip(1).map(follow).collect()
     }
 
     fn report(&self) -> Fit {
@@ -235,6 +219,23 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
     fn jacobian(&self) -> Option<DMatrix<f64>> {
         Some(self.jacobian_at(&self.q))
     }
+}
+
+/// What each error has that the ones before it do not tell, in standard deviations: a scalar Kalman filter follows the drift. `noise` is the variance of each
+/// reading, and of the drift since the one before.
+pub(crate) fn innovations(errors: &[f64], noise: &[(f64, f64)]) -> Vec<f64> {
+    let (Some(&first), Some(&(mut variance, _))) = (errors.first(), noise.first()) else { return Vec::new() };
+    let mut drift = first;
+    let follow = |(error, (white, walk)): (&f64, &(f64, f64))| {
+        let before = variance + walk;
+        let spread = before + white;
+        let innovation = error - drift;
+        let share = before / spread;
+        drift += share * innovation;
+        variance = (1.0 - share) * before;
+        soft(innovation / spread.sqrt())
+    };
+    errors.iter().zip(noise).skip(1).map(follow).collect()
 }
 
 /// A residual whose square grows only linearly beyond a few standard deviations (soft L1).

@@ -39,6 +39,7 @@ pub mod registers;
 mod replay;
 pub mod report;
 mod request;
+pub mod response;
 pub mod rules;
 pub mod score;
 pub mod setpoint;

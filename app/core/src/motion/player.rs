@@ -1,24 +1,27 @@
 //! Plays the legs of a profile as a job, and judges its steps.
 //!
 //! The job reads the encoders itself, every few milliseconds, since ten readings a second of the window say little about
-//! a step. A step of duty has no setpoint in the unit of its response, so it is judged against the speed it ends at.
+//! a step. A step of duty has no setpoint in the unit of its response, so it is judged against the speed it ends at. Its figures are those of a model that
+//! is fitted to the counts with their times: of single speeds the greatest is noise.
 
 use crate::messages::{CoreActMessage, CoreCauseMessage, CoreRemedyMessage};
 use std::time::Duration;
 
 use brushwork_link::device::JobContext;
 use brushwork_link::{Drive, DriveCommand, ExchangeError, Failure, Job};
-use brushwork_tuning::{Point, StepFigures};
+use brushwork_tuning::StepFigures;
+use brushwork_tuning::response::{Quantity, Spread, Stamped, response};
 use brushwork_values::Motor;
 
 use super::profile::{Leg, Mode, WAY_LIMIT, setpoint_text};
 use super::reader::{Encoders, INTERVAL};
-use super::speed::{Reading, present_speed, speeds};
+use super::speed::{Reading, present_speed};
 
 /// Beyond what the legs take by themselves: exchanges, and the pace of a slow line.
 const SLACK: Duration = Duration::from_secs(30);
-/// Half the window that a speed is taken from.
-const HALF_WINDOW_S: f64 = 0.015;
+/// Readings so much further apart than most, and so far apart at all, were late.
+const LATE_TIMES: f64 = 4.0;
+const LATE_S: f64 = 0.03;
 /// How much of the record before a step says where it began.
 const BEFORE_S: f64 = 0.1;
 /// A motor stands when it moves less than this in [`super::speed::PART_S`].
@@ -46,8 +49,12 @@ pub struct JudgedStep {
     /// Where the response began and where it was to go, in the unit of the response.
     pub start: f64,
     pub end: f64,
-    /// None where the response says nothing.
+    /// None where the readings say nothing of it.
     pub figures: Option<StepFigures>,
+    /// Standard deviations of the figures.
+    pub spread: Spread,
+    /// The longest time within the step for which nothing was read, if the computer or the line was late.
+    pub late_s: Option<f64>,
 }
 
 /// What a profile that was played to its end hands back.
@@ -214,51 +221,64 @@ impl Player {
     }
 
     fn judge(&self, command: DriveCommand, begun_at: Duration) -> Vec<JudgedStep> {
+        let quantity = match self.task.mode {
+            Mode::Position => Quantity::Position,
+            Mode::Duty | Mode::Speed => Quantity::Speed,
+        };
         let judge = |motor: &Motor| {
             let setpoint = (self.task.mode != Mode::Duty).then(|| command.setpoint());
-            judge_step(&self.response(*motor), begun_at.as_secs_f64(), setpoint).map(
-                |(start, end, figures)| JudgedStep {
-                    motor: *motor,
-                    text: setpoint_text(&command),
-                    start,
-                    end,
-                    figures,
-                },
-            )
+            let record = &self.record[motor.index()];
+            let text = setpoint_text(&command);
+            judge_step(record, quantity, begun_at.as_secs_f64(), setpoint).map(|judged| JudgedStep {
+                motor: *motor,
+                text,
+                ..judged
+            })
         };
         self.task.motors.iter().filter_map(judge).collect()
     }
-
-    /// What is judged: positions, or speeds.
-    fn response(&self, motor: Motor) -> Vec<Point> {
-        let record = &self.record[motor.index()];
-        match self.task.mode {
-            Mode::Position => {
-                record.iter().map(|reading| Point { time_s: reading.at_s, value: reading.counts }).collect()
-            }
-            Mode::Duty | Mode::Speed => speeds(record, HALF_WINDOW_S),
-        }
-    }
 }
 
-/// Start, end and figures of a step at `begun_at_s`; without a setpoint the end is where the response ends.
+/// A step at `begun_at_s`; without a setpoint the end is where the response ends.
 fn judge_step(
-    response: &[Point],
+    record: &[Reading],
+    quantity: Quantity,
     begun_at_s: f64,
     setpoint: Option<f64>,
-) -> Option<(f64, f64, Option<StepFigures>)> {
-    let split = response.partition_point(|point| point.time_s < begun_at_s);
-    let (before, after) = response.split_at(split);
-    let start = mean(before).or_else(|| after.first().map(|point| point.value))?;
-    let end = setpoint.or_else(|| mean(&after[after.len() - after.len() / 5..]))?;
-    let points: Vec<Point> =
-        after.iter().map(|point| Point { time_s: point.time_s - begun_at_s, ..*point }).collect();
-    Some((start, end, StepFigures::of(&points, start, end)))
+) -> Option<JudgedStep> {
+    let stamped: Vec<Stamped> = record
+        .iter()
+        .map(|reading| Stamped {
+            time_s: reading.at_s - begun_at_s,
+            counts: reading.counts,
+            // A reading may be of any moment between request and reply.
+            spread_s: reading.half_s / 3f64.sqrt(),
+        })
+        .collect();
+    stamped.last().filter(|last| last.time_s > 0.0)?;
+    let found = response(&stamped, quantity, setpoint);
+    let end = setpoint.or(found.map(|found| found.end)).unwrap_or_default();
+    Some(JudgedStep {
+        motor: Motor::M1,
+        text: String::new(),
+        start: found.map_or(0.0, |found| found.start),
+        end,
+        figures: found.map(|found| found.figures),
+        spread: found.map(|found| found.spread).unwrap_or_default(),
+        late_s: late(&stamped),
+    })
 }
 
-fn mean(points: &[Point]) -> Option<f64> {
-    let sum = points.iter().map(|point| point.value).sum::<f64>();
-    (!points.is_empty()).then(|| sum / points.len() as f64)
+/// The longest time between two readings of a step, if that was no usual one.
+fn late(stamped: &[Stamped]) -> Option<f64> {
+    let apart: Vec<(f64, f64)> =
+        stamped.windows(2).map(|pair| (pair[1].time_s, pair[1].time_s - pair[0].time_s)).collect();
+    let mut usual: Vec<f64> = apart.iter().map(|(_, apart_s)| *apart_s).collect();
+    usual.sort_by(f64::total_cmp);
+    let usual_s = usual.get(usual.len() / 2)?;
+    let of_step = apart.iter().filter(|(at_s, _)| *at_s > 0.0).map(|(_, apart_s)| *apart_s);
+    let longest_s = of_step.fold(0.0, f64::max);
+    (longest_s > LATE_S && longest_s > LATE_TIMES * usual_s).then_some(longest_s)
 }
 
 fn failed(context: &JobContext<'_>, error: &ExchangeError) -> Failure {
@@ -279,31 +299,48 @@ fn lost_way(context: &JobContext<'_>, motor: Motor, counts: f64, is_late: bool) 
 mod tests {
     use super::*;
 
-    /// A lag of 50 ms to `end`, from 0.1 s before the step at 5 s.
-    fn response(end: f64) -> Vec<Point> {
-        let times = (-20..200).map(|index| f64::from(index) * 0.005);
+    /// Whole counts of a motor that goes to a speed with a lag of 50 ms, from 0.1 s before the step at 5 s on, read but for a while.
+    fn record(end: f64, unread: std::ops::Range<f64>) -> Vec<Reading> {
+        let counts = |time: f64| {
+            if time < 0.0 { 0.0 } else { end * (time - 0.05 * (1.0 - (-time / 0.05).exp())) }
+        };
+        let times = (-20..300).map(|index| f64::from(index) * 0.005);
         times
-            .map(|time| Point { time_s: 5.0 + time, value: end * (1.0 - (-time.max(0.0) / 0.05).exp()) })
+            .filter(|time| !unread.contains(time))
+            .map(|time| Reading { at_s: 5.0 + time, counts: counts(time).floor(), half_s: 0.0004 })
             .collect()
     }
 
     #[test]
-    fn a_step_is_judged_from_its_command_on() {
-        let (start, end, figures) = judge_step(&response(800.0), 5.0, Some(800.0)).unwrap();
-        assert_eq!((start, end), (0.0, 800.0));
-        let rise_s = figures.unwrap().rise_time_s.unwrap();
-        assert!((rise_s - 0.05 * 9f64.ln()).abs() < 0.002, "{rise_s}");
+    fn a_step_is_judged_from_its_command_on_and_has_no_overshoot_that_the_motor_has_not() {
+        let step = judge_step(&record(800.0, 9.0..9.0), Quantity::Speed, 5.0, Some(800.0)).unwrap();
+        let (figures, spread) = (step.figures.unwrap(), step.spread);
+        let off = (figures.rise_time_s.unwrap() - 0.05 * 9f64.ln()).abs();
+        assert!(off < 2.0 * spread.rise_s.unwrap() && off < 0.03, "{figures:?} {spread:?}");
+        assert!(figures.overshoot < 0.01 && step.start.abs() < 10.0, "{figures:?}");
+        assert_eq!((step.end, step.late_s), (800.0, None));
     }
 
     #[test]
     fn without_a_setpoint_a_step_is_judged_against_where_it_ends() {
-        let (_, end, figures) = judge_step(&response(-800.0), 5.0, None).unwrap();
-        assert!((end + 800.0).abs() < 0.1, "{end}");
-        assert!(figures.unwrap().final_error.abs() < 0.1);
+        let step = judge_step(&record(-8000.0, 9.0..9.0), Quantity::Speed, 5.0, None).unwrap();
+        assert!((step.end + 8000.0).abs() < 80.0, "{step:?}");
+        assert!(step.figures.unwrap().final_error.abs() < 80.0);
+    }
+
+    #[test]
+    fn where_readings_were_late_that_is_told_and_the_figures_are_less_sure() {
+        let prompt = judge_step(&record(8000.0, 9.0..9.0), Quantity::Speed, 5.0, None).unwrap();
+        let late = judge_step(&record(8000.0, 0.002..0.25), Quantity::Speed, 5.0, None).unwrap();
+        let apart_s = late.late_s.expect("nothing was read for a quarter of a second");
+        assert!((apart_s - 0.25).abs() < 0.006, "{apart_s}");
+        let sure = |step: &JudgedStep| step.spread.rise_s.unwrap_or(f64::INFINITY);
+        assert!(sure(&late) > 2.0 * sure(&prompt), "{late:?} {prompt:?}");
+        assert!(late.figures.is_none_or(|figures| figures.overshoot < 0.05), "{late:?}");
     }
 
     #[test]
     fn a_step_without_readings_is_not_judged() {
-        assert_eq!(judge_step(&[], 5.0, Some(1.0)), None);
+        assert_eq!(judge_step(&[], Quantity::Speed, 5.0, Some(1.0)), None);
     }
 }

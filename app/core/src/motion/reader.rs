@@ -21,7 +21,8 @@ impl Encoders {
     pub fn read(&mut self, context: &mut JobContext<'_>) -> Result<[Reading; 2], ExchangeError> {
         let (now, span) = context.address().family().readings().encoders(context)?;
         let at_s = (span.requested_at + span.replied_at).as_secs_f64() / 2.0;
-        Ok(self.take(now).map(|counts| Reading { at_s, counts: counts as f64 }))
+        let half_s = span.replied_at.saturating_sub(span.requested_at).as_secs_f64() / 2.0;
+        Ok(self.take(now).map(|counts| Reading { at_s, counts: counts as f64, half_s }))
     }
 
     fn take(&mut self, now: [i32; 2]) -> [i64; 2] {

@@ -3,13 +3,13 @@
 //! A line through many readings resolves far better than the controller's own speed figures, which count whole counts in
 //! a short window. Times are in seconds on any clock.
 
-use brushwork_tuning::Point;
-
 /// One reading of an encoder.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
     pub at_s: f64,
     pub counts: f64,
+    /// Half the time between its request and its reply.
+    pub half_s: f64,
 }
 
 /// A line through readings.
@@ -83,24 +83,6 @@ pub fn present_speed(readings: &[Reading]) -> Option<Slope> {
     slope(since(readings, PART_S))
 }
 
-/// Speeds along a record, each from the readings within `half_window_s` of its moment.
-pub fn speeds(readings: &[Reading], half_window_s: f64) -> Vec<Point> {
-    let mut points = Vec::new();
-    let (mut first, mut end) = (0, 0);
-    for reading in readings {
-        while readings[first].at_s < reading.at_s - half_window_s {
-            first += 1;
-        }
-        while end < readings.len() && readings[end].at_s <= reading.at_s + half_window_s {
-            end += 1;
-        }
-        if let Some(slope) = slope(&readings[first..end]) {
-            points.push(Point { time_s: reading.at_s, value: slope.counts_per_s });
-        }
-    }
-    points
-}
-
 /// The lines through the last parts of a record, and how long the parts are: the shortest whose noise does not hide the
 /// agreement that is asked for, or else the longest.
 fn telling_parts(readings: &[Reading]) -> Option<(f64, [Slope; PARTS])> {
@@ -158,7 +140,7 @@ mod tests {
     /// Whole counts, read each 5 ms.
     fn record(seconds: f64, counts: impl Fn(f64) -> f64) -> Vec<Reading> {
         let times = (0..=(seconds * 200.0) as usize).map(|index| index as f64 / 200.0);
-        times.map(|at_s| Reading { at_s, counts: counts(at_s).floor() }).collect()
+        times.map(|at_s| Reading { at_s, counts: counts(at_s).floor(), half_s: 0.0 }).collect()
     }
 
     /// Counts of a motor that goes up to `speed` with a time constant.
@@ -203,15 +185,8 @@ mod tests {
     }
 
     #[test]
-    fn speeds_along_a_ramp_follow_it() {
-        let points = speeds(&record(1.0, |at_s| 5000.0 * at_s * at_s), 0.02);
-        let middle = points.iter().find(|point| (point.time_s - 0.5).abs() < 1e-9).unwrap();
-        assert!((middle.value - 5000.0).abs() < 60.0, "{middle:?}");
-    }
-
-    #[test]
     fn one_moment_has_no_speed() {
-        let here = Reading { at_s: 1.0, counts: 5.0 };
+        let here = Reading { at_s: 1.0, counts: 5.0, half_s: 0.0 };
         assert_eq!(slope(&[here; 9]), None);
         assert_eq!(slope(&[]), None);
     }

@@ -7,8 +7,8 @@ use egui::{Button, ComboBox, Grid, Label, RichText, Ui, vec2};
 use super::progress::progress_ui;
 use crate::command::{Command, Commands, GuidedAction};
 use crate::messages::NameMessage;
-use crate::model::Model;
 use crate::model::generator::{duration_text, mode_of};
+use crate::model::{IndicatorState, Model};
 use crate::screens::messages::ScreenMessage;
 use crate::theme::{self, Palette};
 use crate::widgets::{Numeric, choice_ui};
@@ -18,6 +18,8 @@ use brushwork_core::motion::profile::{COUNT_RANGE, DWELL_RANGE_S, Mode, Profile,
 /// Any count of a 32 bit encoder.
 const COUNTS: RangeInclusive<f64> = i32::MIN as f64..=i32::MAX as f64;
 const FIELD_WIDTH: f32 = 104.0;
+/// Standard deviations that are told as the uncertainty of a figure.
+const SPREADS: f64 = 2.0;
 
 pub fn generator_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let Some(scope) = model.screen.arm_scope() else { return };
@@ -118,7 +120,7 @@ fn shape_ui(ui: &mut Ui, shape: &mut Shape) {
     response.on_hover_text(hint);
 }
 
-/// Rise time, overshoot, settling and ITAE of the last steps.
+/// Rise time, overshoot, settling and ITAE of the last steps, and how sure they are.
 fn figures_ui(ui: &mut Ui, steps: &[&JudgedStep], mode: Mode) {
     let _palette = Palette::of(ui);
     if steps.is_empty() {
@@ -128,7 +130,8 @@ fn figures_ui(ui: &mut Ui, steps: &[&JudgedStep], mode: Mode) {
     }
     Grid::new("figures").spacing(vec2(18.0, 2.0)).show(ui, |ui| {
         for heading in ["Step", "Response", "Rise", "Overshoot", "Settling", "ITAE", "Final error"] {
-            ui.label(RichText::new(heading).small().weak());
+            let hint = "Of a response that is fitted to the counts with the times at which they were read; ± two standard deviations";
+            ui.label(RichText::new(heading).small().weak()).on_hover_text(hint);
         }
         ui.end_row();
         for step in steps {
@@ -136,6 +139,24 @@ fn figures_ui(ui: &mut Ui, steps: &[&JudgedStep], mode: Mode) {
             ui.end_row();
         }
     });
+    for step in steps {
+        let Some(late_s) = step.late_s else { continue };
+        let late = ScreenMessage::LateStep {
+            motor: step.motor,
+            text: step.text.clone(),
+            milliseconds: late_s * 1e3,
+        };
+        IndicatorState::Warning.line_ui(ui, &late.to_string());
+    }
+}
+
+/// A time with twice its standard deviation; one that is no longer than that was not seen.
+fn time_text(time_s: Option<f64>, spread_s: Option<f64>, without: &str) -> String {
+    match (time_s, spread_s.map(|spread_s| SPREADS * spread_s)) {
+        (None, _) => without.to_owned(),
+        (Some(time_s), Some(spread_s)) if spread_s < time_s => format!("{time_s:.3} ± {spread_s:.3} s"),
+        (Some(_), _) => "not seen".to_owned(),
+    }
 }
 
 fn step_ui(ui: &mut Ui, step: &JudgedStep, mode: Mode) {
@@ -149,13 +170,13 @@ fn step_ui(ui: &mut Ui, step: &JudgedStep, mode: Mode) {
     ];
     match &step.figures {
         Some(figures) => cells.extend([
-            figures.rise_time_s.map_or("not reached".to_owned(), |time| format!("{time:.3} s")),
-            format!("{:.1} %", figures.overshoot * 100.0),
-            figures.settling_time_s.map_or("not settled".to_owned(), |time| format!("{time:.3} s")),
+            time_text(figures.rise_time_s, step.spread.rise_s, "not reached"),
+            format!("{:.1} ± {:.1} %", figures.overshoot * 100.0, SPREADS * step.spread.overshoot * 100.0),
+            time_text(figures.settling_time_s, step.spread.settling_s, "not settled"),
             format!("{:.1} {itae_unit}", figures.itae),
             format!("{:.0} {unit}", figures.final_error + 0.0),
         ]),
-        None => cells.push("no response".to_owned()),
+        None => cells.push("the readings tell none".to_owned()),
     }
     for cell in cells {
         ui.label(RichText::new(cell).text_style(theme::figures()));

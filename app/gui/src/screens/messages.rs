@@ -9,6 +9,7 @@ messages! {
         Stops { risk: &'static str, keys: &'static str, what: &'static str } "{risk} {keys} stops {what}.",
         FallsSilent { seconds: f64 } "If this program falls silent, the controller stops the motors by itself after {seconds:.1} s. Leaving this screen disarms.",
         StepOf { number: usize, of: usize, title: &'static str } "Step {number} of {of}: {title}",
+        LateStep { motor: Motor, text: String, milliseconds: f64 } "{motor} to {text}: nothing was read for {milliseconds:.0} ms of this step, since this computer or the line was late; its figures are the less sure.",
         ArmToRun { duration: String } "{duration}. Arm this screen to run it.",
         GraphOf { target: String } "Brushwork graph: {target}",
         BecomesTorque { number: usize } "Motor {number}: with L and R both other than 0 the controller switches from duty to current (torque) control.",

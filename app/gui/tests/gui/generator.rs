@@ -48,6 +48,15 @@ fn a_step_of_duty_is_played_judged_and_stops_by_itself() {
     assert_eq!(bench.real_duty(Motor::M2), 0.0);
     let steps = bench.model().front.generator.last_steps(brushwork_core::motion::profile::Mode::Duty).len();
     assert_eq!(steps, 1);
+    let step =
+        bench.model().front.generator.last_steps(brushwork_core::motion::profile::Mode::Duty)[0].clone();
+    let figures = step.figures.expect("it was judged");
+    println!("{step:?}");
+    assert!(figures.overshoot < 0.01, "a motor without a loop has none: {figures:?}");
+    let (rise_s, sure_s) =
+        (figures.rise_time_s.expect("it was reached"), step.spread.rise_s.expect("it has one"));
+    assert!(rise_s > 0.05 && sure_s < 0.2 * rise_s, "{rise_s} ± {sure_s}");
+    assert!(bench.sees_part(" ± "), "what is told has its uncertainty");
     for heading in ["Rise", "Overshoot", "Settling", "ITAE"] {
         assert!(bench.sees(heading), "{heading}");
     }
