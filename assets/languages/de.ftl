@@ -181,6 +181,7 @@ action =
     .record-to-csv = Als CSV aufzeichnen
     .record-to-a-compact-file = In eine kompakte Datei aufzeichnen
     .stop-recording = Aufzeichnung beenden
+    .save-the-whole-history = Ganzen Verlauf speichern
     .export-what-is-in-view-as-csv = Ansicht als CSV ausgeben
     .export-the-picture-as-png = Bild als PNG ausgeben
     .export-the-picture-as-svg = Bild als SVG ausgeben

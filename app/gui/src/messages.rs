@@ -373,6 +373,7 @@ messages! {
         RecordedUntilLost { samples: u64, path: String, size: String } "The recording ended with the link. Recorded {samples} samples to {path} ({size}).",
         RecordedUntilOther { samples: u64, path: String, size: String } "The recording ended: the controller has other channels. Recorded {samples} samples to {path} ({size}).",
         NoThread "Could not open the recording: the system gave no thread.",
+        NothingKept "Nothing was sampled yet: there is no history to save.",
         NoSample { path: String } "Could not open the recording {path}: there is no sample in it. Choose another file.",
         LeftOut { path: String, rows: u64 } "{path}: the oldest {rows} rows are left out; the rest fits in memory.",
         Notes { notes: Sentences } "{notes}",

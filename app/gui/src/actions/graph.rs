@@ -48,6 +48,7 @@ pub(super) const ACTIONS: &[Action] = &[
     action!(7 "graph.record-csv", RecordCsv, "Records every sample from now on into a CSV file, with host times."),
     action!(7 "graph.record-compact", RecordCompact, "Records every sample from now on into a compact file."),
     action!(7 "graph.stop-recording", StopRecording, "Ends the recording and closes its file."),
+    action!(8 "graph.save-history", SaveHistory, "Writes the last hour of all channels, with its events, into a CSV file that can be opened again; after a disconnect too."),
     action!(8 "graph.export-csv", ExportCsv, "Writes the samples in view into a CSV file."),
     action!(8 "graph.export-png", ExportPng, "Writes the picture in view into a PNG file."),
     action!(8 "graph.export-svg", ExportSvg, "Writes the picture in view into an SVG file."),

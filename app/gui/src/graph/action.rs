@@ -46,6 +46,8 @@ pub enum GraphAction {
     /// Begins to record into a compact file.
     RecordCompact,
     StopRecording,
+    /// Writes everything that is kept: all channels, marks and gaps.
+    SaveHistory,
     ExportCsv,
     ExportPng,
     ExportSvg,
@@ -90,6 +92,7 @@ impl GraphAction {
             Self::RecordCsv => "Record to CSV",
             Self::RecordCompact => "Record to a compact file",
             Self::StopRecording => "Stop recording",
+            Self::SaveHistory => "Save the whole history",
             Self::ExportCsv => "Export what is in view as CSV",
             Self::ExportPng => "Export the picture as PNG",
             Self::ExportSvg => "Export the picture as SVG",
@@ -138,6 +141,7 @@ impl LiveGraph {
             GraphAction::RecordCsv => self.record(brushwork_core::recording::Form::Csv),
             GraphAction::RecordCompact => self.record(brushwork_core::recording::Form::Compact),
             GraphAction::StopRecording => self.end_recording(Stopping::Asked),
+            GraphAction::SaveHistory => self.save_history(),
             GraphAction::ExportCsv => self.export(super::files::Export::Csv),
             GraphAction::ExportPng => self.export(super::files::Export::Png),
             GraphAction::ExportSvg => self.export(super::files::Export::Svg),
@@ -195,7 +199,7 @@ impl LiveGraph {
 mod tests {
     use super::*;
 
-    const ALL: [GraphAction; 38] = [
+    const ALL: [GraphAction; 39] = [
         GraphAction::TogglePause,
         GraphAction::BackToLive,
         GraphAction::Earlier,
@@ -231,6 +235,7 @@ mod tests {
         GraphAction::RecordCsv,
         GraphAction::RecordCompact,
         GraphAction::StopRecording,
+        GraphAction::SaveHistory,
         GraphAction::ExportCsv,
         GraphAction::ExportPng,
         GraphAction::ExportSvg,

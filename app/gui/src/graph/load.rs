@@ -171,6 +171,11 @@ pub fn csv_of(track: &Track, keys: &[String], zero_s: f64, began: SystemTime) ->
             (true, false) => {}
         }
     }
+    // What happened after the last sample: that the link was lost, say.
+    for mark in marks {
+        let (kind, text) = (mark.kind.word().to_owned(), mark.text.clone());
+        writer.write(&Record::Mark { at_us: us(mark.at_s), kind, text })?;
+    }
     writer.flush()?;
     drop(writer);
     Ok(file)

@@ -332,6 +332,8 @@ fn more_ui(ui: &mut Ui, graph: &mut LiveGraph) {
         button_ui(ui, graph, "PNG", A::ExportPng.title(), A::ExportPng);
         button_ui(ui, graph, "SVG", A::ExportSvg.title(), A::ExportSvg);
     });
+    let hint = "The last hour of all channels, with commands, stops and other events, as a CSV that can be opened again; after a disconnect too";
+    button_ui(ui, graph, "Save the whole history", hint, A::SaveHistory);
     ui.separator();
     open_ui(ui, graph);
     ui.separator();

@@ -605,3 +605,54 @@ fn several_recordings_lie_over_each_other_by_start_or_mark_and_are_shifted_by_ha
     let shifted = places(&mut bench);
     assert!((shifted[1].1 - by_mark[1].1 - 0.25).abs() < 1e-9, "typed: {shifted:?}");
 }
+
+#[test]
+fn the_last_hour_is_kept_with_its_events_after_a_disconnect_saved_and_opened_again() {
+    let ends: [fn(&mut Bench); 2] =
+        [|bench| bench.act(&WorldAction::Unplug { unplugged: true }), |bench| bench.press("Disconnect")];
+    for end in ends {
+        let mut bench = bench();
+        let folder = in_folder(&mut bench);
+        bench.arm();
+        bench.set_duty(Motor::M1, "30");
+        bench.pass_ms(2000);
+        graph(&mut bench).act(brushwork_gui::graph::GraphAction::AddNote);
+        bench.press("Stop All");
+        bench.pass_ms(1000);
+        end(&mut bench);
+        bench.pass_ms(4000);
+        assert!(!bench.model().is_connected());
+        assert!(graph(&mut bench).live.track.history.rows().end > 30, "nothing is thrown away");
+        bench.key_with(Modifiers::COMMAND, Key::Num3);
+        bench.pass_ms(300);
+        bench.press("More");
+        bench.press("Save the whole history");
+        let files = files_in(&mut bench, folder.path(), 1);
+        graph(&mut bench).files.open(&files[0]);
+        bench.until("the history is opened", |bench| graph(bench).opened.is_some());
+        let graph = graph(&mut bench);
+        let opened = &graph.opened.as_ref().expect("it was opened").sheet.track;
+        let all = |track: &brushwork_gui::graph::Track, key: &str| {
+            let channel = track.channel_of_key(key).expect("the channel is there");
+            let rows = track.history.rows();
+            rows.filter_map(|row| track.history.reading(channel, row))
+                .map(|(_, value)| value)
+                .collect::<Vec<_>>()
+        };
+        // Channels that were not shown are kept too.
+        for key in ["m1_pwm", "m2_current", "main_battery"] {
+            assert_eq!(all(opened, key), all(&graph.live.track, key), "{key}");
+        }
+        let marks = |track: &brushwork_gui::graph::Track| {
+            track.marks.iter().map(|mark| (mark.kind, mark.text.clone())).collect::<Vec<_>>()
+        };
+        assert_eq!(marks(opened), marks(&graph.live.track));
+        let kinds: Vec<MarkKind> = marks(opened).into_iter().map(|(kind, _)| kind).collect();
+        assert!(
+            [MarkKind::Drive, MarkKind::Stop, MarkKind::Arm, MarkKind::Note]
+                .iter()
+                .all(|kind| kinds.contains(kind)),
+            "{kinds:?}"
+        );
+    }
+}

@@ -198,6 +198,26 @@ impl LiveGraph {
         });
     }
 
+    /// Writes all that is kept of what came in to a new file, with all its marks.
+    pub fn save_history(&mut self) {
+        let track = &self.live.track;
+        let has_data =
+            |index: &usize| !track.history.summary(*index, f64::NEG_INFINITY, f64::INFINITY).0.is_empty();
+        let keys: Vec<String> = (0..track.channels.len())
+            .filter(has_data)
+            .map(|index| track.channels[index].key.clone())
+            .collect();
+        if keys.is_empty() {
+            return self.files.say(Gravity::Warning, GraphMessage::NothingKept);
+        }
+        let (track, zero_s) = (track.clone(), track.began_s.unwrap_or(0.0));
+        let began = self.files.wall(Duration::from_secs_f64(zero_s.max(0.0)));
+        let path = self.files.free_path("csv");
+        self.files.write(path, move || {
+            load::csv_of(&track, &keys, zero_s, began).map_err(|error| error.to_string())
+        });
+    }
+
     /// Writes what is in view to a new file.
     pub fn export(&mut self, what: Export) {
         let extension = match what {
