@@ -64,6 +64,7 @@ fn of_character(letter: char) -> (String, &'static str) {
         '!' => "Not equal is <>; Not turns a condition round.",
         '&' => "Conditions are joined with And; a hexadecimal number is written 1FH or 0x1F.",
         '|' => "Conditions are joined with And, Or and Not.",
+        '%' => "The remainder of a division is written Mod.",
         '.' => "Numbers are whole.",
         ':' => "One statement stands in a line.",
         _ => "Take it out.",

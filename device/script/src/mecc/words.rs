@@ -105,20 +105,12 @@ pub const FORM_UNKNOWN: [(&str, &str); 2] = [
 ];
 
 /// Words of other languages, in small letters, and what stands for them here.
-const FOREIGN: [(&str, &str); 25] = [
+const FOREIGN: [(&str, &str); 17] = [
     ("break", "There is none: a Do ends where its Until holds, a function with Return."),
     ("const", "Declare a variable with its value: Declare Byte name = 5"),
     ("dim", "Variables are declared: Declare Byte name"),
     ("elseif", "Write Else, and the next If with its own End If in the lines below."),
     ("elsif", "Write Else, and the next If with its own End If in the lines below."),
-    ("enddatatable", "It is two words: End DataTable"),
-    ("endeventhandler", "It is two words: End EventHandler"),
-    ("endfunction", "It is two words: End Function"),
-    ("endif", "It is two words: End If"),
-    ("endloop", "It is two words: End Loop"),
-    ("endprogram", "It is two words: End Program"),
-    ("endselect", "It is two words: End Select"),
-    ("endwhile", "It is two words: End While"),
     ("exit", "There is none: a Do ends where its Until holds, a function with Return."),
     ("for", "Count in a loop: Do, Increment variable, Until variable > 5"),
     ("gosub", "A function is called: Call function()"),
@@ -132,6 +124,30 @@ const FOREIGN: [(&str, &str); 25] = [
     ("var", "Variables are declared: Declare Byte name"),
     ("wend", "A While ends with End While."),
 ];
+
+/// Two words of this language that people write as one.
+const JOINED: [&str; 11] = [
+    "Begin Program",
+    "Disable Events",
+    "Enable Events",
+    "End DataTable",
+    "End EventHandler",
+    "End Function",
+    "End If",
+    "End Loop",
+    "End Program",
+    "End Select",
+    "End While",
+];
+
+/// The two words that one stands for, and its byte at which the second begins.
+#[must_use]
+pub fn joined(word: &str) -> Option<(&'static str, usize)> {
+    let is_it =
+        |both: &&str| both.len() == word.len() + 1 && both.replace(' ', "").eq_ignore_ascii_case(word);
+    let both = JOINED.into_iter().find(|both| is_it(both))?;
+    Some((both, both.find(' ')?))
+}
 
 /// What stands for a word, in small letters, of another language.
 #[must_use]

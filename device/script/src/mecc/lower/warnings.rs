@@ -15,6 +15,7 @@ impl Lowering<'_> {
     pub fn warn(&mut self, items: &[Item]) {
         let facts = std::mem::take(&mut self.facts);
         self.warn_of_waits(&facts);
+        self.warn_of_wrapped_waits(&facts);
         self.warn_of_old_clocks(&facts);
         self.warn_of_events(&facts);
         self.warn_of_short_tables(&facts);
@@ -54,6 +55,23 @@ impl Lowering<'_> {
             let message = format!("Nothing else runs in this wait of {seconds:.2} s, no handler either.");
             let hint = "Set a timer with SetTimer, or wait in a loop over GetClock().".to_owned();
             self.report(codes::LONG_WAIT, *span, message, Some(hint));
+        }
+    }
+
+    /// A wait that is written as less than 0 is one of minutes, since a Word has no sign.
+    fn warn_of_wrapped_waits(&mut self, facts: &Facts) {
+        for (span, ticks) in &facts.waits {
+            let typed = span.of(self.text);
+            if !typed.trim_start().starts_with('-') || *ticks == 0 {
+                continue;
+            }
+            let seconds = f64::from(*ticks) / f64::from(TICKS_PER_SECOND);
+            let message = format!(
+                "`{}` is {ticks} as a Word: this waits for {seconds:.0} s.",
+                crate::diagnostic::excerpt(typed)
+            );
+            let hint = "A wait is 0 to 65535 ticks of 1/128 s; 128 is a second.".to_owned();
+            self.report(codes::DOES_NOT_FIT, *span, message, Some(hint));
         }
     }
 

@@ -71,6 +71,9 @@ impl Parser<'_> {
 
     /// The end of a block that was not begun.
     pub fn ends_nothing(&mut self) {
+        if self.parted.contains(&self.span().start) {
+            return self.skip_line();
+        }
         let words = match self.word_next() {
             Some(_) if self.is_word("end") => {
                 let second = self.word_at(self.at + 1).unwrap_or_default();

@@ -44,6 +44,7 @@ pub struct Parsed {
 pub fn parse(text: &str) -> Parsed {
     let (mut tokens, wrong) = tokens(text);
     tokens.retain(|token| token.kind != TokenKind::Comment);
+    let joined = part_joined(&mut tokens, text);
     let mut parser = Parser {
         text,
         tokens,
@@ -55,13 +56,49 @@ pub fn parse(text: &str) -> Parsed {
         count: 0,
         guesses: 0,
         table_bytes: 0,
+        parted: HashSet::new(),
     };
+    for (both, span) in joined {
+        let typed = excerpt(span.of(text));
+        let hint = format!("It is two words: {both}");
+        parser.report(codes::UNKNOWN_COMMAND, span, format!("`{typed}` is no command."), Some(hint));
+        parser.parted.insert(span.start);
+    }
     let items = parser.items();
     let mut diagnostics = parser.diagnostics;
     for wrong in wrong {
         diagnostics.note(wrong.span.start, wrong.code, || reported(wrong, text));
     }
     Parsed { items, diagnostics }
+}
+
+/// The two words that one stands for, and where it stands.
+type Joined = (&'static str, Span);
+
+/// Reads `EndIf`, alone in its line, as the two words that were meant, so that the block ends there and one mistake is told once.
+fn part_joined(tokens: &mut Vec<Token>, text: &str) -> Vec<Joined> {
+    let (mut parted, mut found, mut begins_line) = (Vec::with_capacity(tokens.len()), Vec::new(), true);
+    for (index, token) in tokens.iter().enumerate() {
+        let ends_line = tokens
+            .get(index + 1)
+            .is_some_and(|next| matches!(next.kind, TokenKind::Newline | TokenKind::End));
+        // With `BeginProgram` and the ends of blocks nothing else stands in a line.
+        let place = (token.kind == TokenKind::Word && begins_line && ends_line)
+            .then(|| words::joined(token.span.of(text)))
+            .flatten();
+        begins_line = token.kind == TokenKind::Newline;
+        let Some((both, place)) = place else {
+            parted.push(*token);
+            continue;
+        };
+        let middle = token.span.start + place as u32;
+        let halves =
+            [Span { start: token.span.start, end: middle }, Span { start: middle, end: token.span.end }];
+        parted.extend(halves.map(|span| Token { span, ..*token }));
+        found.push((both, token.span));
+    }
+    *tokens = parted;
+    found
 }
 
 /// A parse that cannot go on in this line; what is wrong has been reported.
@@ -86,6 +123,8 @@ struct Parser<'a> {
     guesses: u32,
     /// Bytes of tables so far.
     table_bytes: usize,
+    /// Where words stand that were read as two: that was told.
+    parted: HashSet<u32>,
 }
 
 impl<'a> Parser<'a> {
