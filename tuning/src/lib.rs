@@ -49,6 +49,7 @@ pub mod stability;
 mod step;
 pub mod ticks;
 pub mod trace;
+pub mod trajectory;
 pub mod trial;
 pub mod tune;
 mod verify;

@@ -10,6 +10,7 @@ use crate::record::Entry;
 use crate::request::Request;
 use crate::rules::Classic;
 use crate::setup::Setup;
+use crate::trajectory::Trajectory;
 use crate::winding::{Winding, WindingUnknown};
 use serde::{Deserialize, Serialize};
 
@@ -110,4 +111,12 @@ pub struct Report<L: Law> {
     pub seconds: (f64, f64),
     /// The raw record.
     pub record: Vec<Entry<L>>,
+}
+
+impl<L: Law> Report<L> {
+    /// The trapezoid that the motor follows with the gains of this run; `None` where it has none.
+    #[must_use]
+    pub fn trajectory(&self) -> Option<Trajectory> {
+        self.task.filter(|_| self.verdict != Verdict::Refused).and_then(|task| Trajectory::of(&task.plant))
+    }
 }

@@ -36,6 +36,9 @@ pub fn summary(report: &Report) -> Value {
     let mut value = serde_json::to_value(report).unwrap_or_else(|_| json!({}));
     if let Some(fields) = value.as_object_mut() {
         fields.remove("record");
+        if let Some(trajectory) = report.trajectory() {
+            fields.insert("trajectory".to_owned(), json!(trajectory));
+        }
     }
     value
 }
@@ -128,6 +131,13 @@ pub fn print(report: &Report, out: &mut Output) -> Result<(), OutputError> {
         let measured =
             report.measured.map_or_else(String::new, |m| format!("measured {:.1} %", 100.0 * m.duty_rms));
         row("duty noise", format!("{:.1} %", 100.0 * design.noise_duty), measured);
+    }
+    if let Some(trajectory) = report.trajectory() {
+        row(
+            "trajectory",
+            format!("{:.0} counts/s", trajectory.speed_counts_per_s),
+            format!("{:.0} counts/s² both ways", trajectory.accel_counts_per_s2),
+        );
     }
     if let Some(given) = report.qpps.and_then(|qpps| report.proposed.feed_forward(qpps)) {
         row(

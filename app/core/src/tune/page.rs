@@ -159,6 +159,18 @@ fn promised(page: &mut String, report: &Report) {
         format!("{:.1} %", 100.0 * design.noise_duty),
         "from the rounding of counts".into(),
     ]);
+    if let Some(trajectory) = report.trajectory() {
+        rows.push([
+            "trajectory, speed".into(),
+            format!("{:.0} counts/s", trajectory.speed_counts_per_s),
+            "the motor follows it with duty to spare".into(),
+        ]);
+        rows.push([
+            "trajectory, acceleration".into(),
+            format!("{:.0} counts/s²", trajectory.accel_counts_per_s2),
+            "up and down".into(),
+        ]);
+    }
     table(page, "The loop with these gains", &["", "value", WHAT], &rows);
     let rules: Vec<[String; 6]> = alternatives(report)
         .iter()

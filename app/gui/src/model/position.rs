@@ -1,6 +1,7 @@
 //! The Position screen's state: where each motor is to go, and how.
 
 use brushwork_link::device::{Drive, DriveCommand};
+use brushwork_tuning::trajectory::Trajectory;
 use brushwork_values::Motor;
 
 use super::setpoints::{Direction, Setpoints};
@@ -43,6 +44,15 @@ impl Default for Position {
 }
 
 impl Position {
+    /// Moves no quicker than a motor follows.
+    pub fn follow(&mut self, trajectory: &Trajectory) {
+        let (least, most) = PACE_RANGE.into_inner();
+        let within = |value: f64| value.round().clamp(least, most);
+        self.speed_counts_per_s = within(trajectory.speed_counts_per_s);
+        self.accel_counts_per_s2 = within(trajectory.accel_counts_per_s2);
+        self.decel_counts_per_s2 = self.accel_counts_per_s2;
+    }
+
     /// Asks for a position within each motor's travel; with sync, of both motors.
     pub fn set_position(&mut self, motor: Motor, counts: f64, travels: Travels) {
         for each in self.coupled(motor) {

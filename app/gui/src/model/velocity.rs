@@ -1,6 +1,7 @@
 //! The Velocity screen's state: what speed is asked for, and how fast it may change.
 
 use brushwork_link::device::{Drive, DriveCommand};
+use brushwork_tuning::trajectory::Trajectory;
 use brushwork_values::Motor;
 
 use super::setpoints::{Direction, Setpoints};
@@ -26,6 +27,12 @@ impl Default for Velocity {
 }
 
 impl Velocity {
+    /// Changes speeds no quicker than a motor follows.
+    pub fn follow(&mut self, trajectory: &Trajectory) {
+        let (least, most) = ACCEL_RANGE_COUNTS_PER_S2.into_inner();
+        self.accel_counts_per_s2 = trajectory.accel_counts_per_s2.round().clamp(least, most);
+    }
+
     /// Asks for a speed within -`qpps` to `qpps` of each motor; with sync, of both motors.
     pub fn set_speed(&mut self, motor: Motor, counts_per_s: f64, qpps: [f64; 2]) {
         let asked = if counts_per_s.is_finite() { counts_per_s } else { 0.0 };

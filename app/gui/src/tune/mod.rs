@@ -17,6 +17,7 @@ pub mod measured;
 pub mod messages;
 pub mod model;
 pub mod observe;
+mod pace;
 pub mod plots;
 pub mod refusal;
 pub mod registers;

@@ -41,6 +41,7 @@ pub fn result_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Com
         acts_ui(ui, model, which, commands);
         ui.spacing_mut().interact_size.y = 20.0;
         figures_ui(ui, model, which);
+        super::pace::pace_ui(ui, model, which);
         gains_ui(ui, model, which, held);
         rules_ui(ui, model, which);
         model_ui(ui, model, which);

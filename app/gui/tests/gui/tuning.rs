@@ -521,6 +521,31 @@ fn the_second_motor_is_tuned_and_the_first_stands() {
 }
 
 #[test]
+fn a_trajectory_that_both_motors_follow_sets_the_sliders_of_the_screens() {
+    let mut bench = tuned("Velocity Settings", Loop::Velocity);
+    assert!(bench.sees_part("A trajectory that the motor follows"));
+    assert!(!bench.sees_part("One that both motors follow alike"), "of the second nothing is known");
+    bench.press("Arm");
+    bench.pass_ms(500);
+    bench.press("Tune M2");
+    finish(&mut bench);
+    assert!(bench.sees_part("One that both motors follow alike"));
+    let of = |bench: &mut Bench, motor| {
+        let run = bench.model().front.tune.panel(Loop::Velocity, motor).run().cloned();
+        run.and_then(|run| run.report.trajectory()).expect("it is tuned")
+    };
+    let (first, second) = (of(&mut bench, Motor::M1), of(&mut bench, Motor::M2));
+    let both = first.of_both(second);
+    press_below(&mut bench, "Use for the sliders");
+    let model = bench.model();
+    let accel = both.accel_counts_per_s2.round();
+    assert_eq!(model.front.velocity.accel_counts_per_s2, accel);
+    let position = model.front.position;
+    assert_eq!((position.accel_counts_per_s2, position.decel_counts_per_s2), (accel, accel));
+    assert_eq!(position.speed_counts_per_s, both.speed_counts_per_s.round());
+}
+
+#[test]
 fn an_axis_with_position_limits_stays_within_them_unless_a_person_says_otherwise() {
     let mut config = config("small-gearmotor");
     let mut settings = Controller::new(config.clone()).expect("the preset is sound").stored_settings();

@@ -15,4 +15,5 @@ mod noisy_current;
 mod other_make;
 mod small_faults;
 mod small_table;
+mod trajectory;
 mod ways_out;
