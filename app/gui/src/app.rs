@@ -193,6 +193,7 @@ impl App {
     /// Has read what a diagnosis needs. Nothing is said when it cannot be: it is tried again.
     fn watch(&mut self, id: ConnectionId) {
         let shows_settings = self.shows_settings_of(id);
+        let screen = (self.model.front.id() == id).then_some(self.model.screen);
         let (Some(device), Some(connection)) = (self.links.device(id), self.model.connection_mut(id)) else {
             return;
         };
@@ -210,7 +211,11 @@ impl App {
         let wanted = connection.diagnosis_wants_signals()
             || connection.shows_signals(shows_settings)
             || connection.graph.wants_pins();
-        let traced = connection.traffic.open;
+        let unit = connection.link.identity();
+        let is_heard = unit
+            .zip(screen)
+            .is_some_and(|(unit, screen)| connection.own.iter().any(|own| own.shows_unasked(unit, screen)));
+        let traced = connection.traffic.open || is_heard;
         let link = self.links.entry(id);
         if link.reads_signals != wanted
             && let Some(device) = &link.device

@@ -8,6 +8,7 @@ use std::time::Duration;
 use brushwork_link::{Event, Failure, Identity, Message, Request, Sample};
 
 use super::known::Known;
+use crate::model::screen::Screen;
 
 /// The state of a family's own screens and panels for one link. Each link has that of every family.
 pub trait Own: Any + Debug {
@@ -46,6 +47,11 @@ pub trait Own: Any + Debug {
     /// Where the unit keeps its motor by itself, in counts: by settings as they were confirmed, and as they are known.
     fn travel(&self, _confirmed: Known<'_>, _known: Known<'_>) -> Option<(f64, f64)> {
         None
+    }
+
+    /// Whether its part of that screen shows bytes that come in without being asked for.
+    fn shows_unasked(&self, _unit: &Identity, _screen: Screen) -> bool {
+        false
     }
 
     /// Such a read was not taken by the link.

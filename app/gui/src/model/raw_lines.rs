@@ -50,6 +50,22 @@ impl<K> RawLines<K> {
         Command::Raw { id, bytes }
     }
 
+    /// Whether a line waits for its answer.
+    pub fn is_waiting(&self) -> bool {
+        self.entries.iter().any(|entry| entry.answer.is_none())
+    }
+
+    /// Adds what came in without being asked for, as it came and in words.
+    pub fn hear(&mut self, kept: K, received: String, words: String) {
+        let id = self.next_id;
+        self.next_id += 1;
+        if self.entries.len() == KEPT {
+            self.entries.pop_front();
+        }
+        let answer = Some(Ok((received, words)));
+        self.entries.push_back(RawLine { id, kept, sent: String::new(), meaning: String::new(), answer });
+    }
+
     /// Takes note of an answer, in words that `in_words` has for it.
     pub fn note(&mut self, event: &Event, in_words: impl FnOnce(&K, &[u8]) -> String) {
         let Event::RawReply { id, result } = event else { return };

@@ -31,8 +31,10 @@ fn list_ui<K>(ui: &mut Ui, lines: &RawLines<K>, beginning: &str) {
 
 fn line_ui<K>(ui: &mut Ui, line: &RawLine<K>) {
     let palette = Palette::of(ui);
-    ui.add(Label::new(RichText::new(format!("> {}", line.sent)).monospace()).wrap());
-    ui.indent(&line.sent, |ui| ui.add(Label::new(RichText::new(&line.meaning).weak()).wrap()));
+    if !line.sent.is_empty() {
+        ui.add(Label::new(RichText::new(format!("> {}", line.sent)).monospace()).wrap());
+        ui.indent(&line.sent, |ui| ui.add(Label::new(RichText::new(&line.meaning).weak()).wrap()));
+    }
     let answer = match &line.answer {
         None => RichText::new("waiting for the answer …"),
         Some(Ok((received, words))) => {

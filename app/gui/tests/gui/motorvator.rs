@@ -361,3 +361,45 @@ fn the_start_page_offers_a_board_that_runs_the_program_that_is_open() {
         assert_eq!(bench.app().model.front.target.as_deref(), Some(target));
     });
 }
+
+/// A program of somebody's own, which sends two frames a second by a timer and counts them.
+const SENDS_BY_ITSELF: &str = "Declare DataTable box\n\"TX\"\nEnd DataTable\nDeclare Byte count = 0\nDeclare Byte rest1\nDeclare Word rest2\nDeclare Word rest3\n\
+    Declare DataPointer pointer\nDeclare EventHandler Again()\nIncrement count\npointer = SetPointer(box)\nTransmit pointer\nSetTimer 1, 64\nEnd EventHandler\n\
+    Begin Program\nrest1 = 0\nrest2 = 0\nrest3 = 0\nSetEvent UserTimer1Event, Again\nEnable Events\nSetTimer 1, 1\nLoop\nEnd Loop\nEnd Program\n";
+
+#[test]
+fn frames_that_a_program_sends_by_itself_are_streamed_into_the_terminal() {
+    alone("motorvator::frames_that_a_program_sends_by_itself_are_streamed_into_the_terminal", LIMIT, || {
+        let folder = tempfile::tempdir().expect("a temporary folder can be made");
+        let compiled = brushwork_script::mecc::compile(SENDS_BY_ITSELF);
+        let program = compiled.program.unwrap_or_else(|| panic!("{:?}", compiled.diagnostics));
+        let spec = MotorvatorSpec::parse("motorvator-3,seed=0").expect("it is a board");
+        let board = spec.board(program).expect("the preset is sound");
+        let mut bench = Bench::new(&folder, (&MotorvatorDriver, &Motorvator), board, "sim:motorvator-3");
+        bench.app().open("sim:motorvator-3");
+        bench.pass_ms(6000);
+        let past: Vec<String> = bench.app().model.messages.past().map(|said| said.text.to_string()).collect();
+        assert!(bench.app().model.front.is_connected(), "{past:?}");
+        bench.press("Terminal");
+        bench.pass_ms(6000);
+        let counts = |bench: &mut Bench| -> Vec<u32> {
+            let lines = &bench.app().model.front.motorvator().terminal.lines;
+            let received = lines.entries.iter().filter_map(|entry| entry.answer.as_ref()?.as_ref().ok());
+            received
+                .filter(|(frame, _)| frame.starts_with("073084088"))
+                .map(|(frame, _)| frame[9..12].parse().expect("a triplet"))
+                .collect()
+        };
+        let seen = counts(&mut bench);
+        assert!(seen.len() >= 8, "about two a second: {seen:?}");
+        assert!(seen.windows(2).all(|pair| pair[0] < pair[1]), "each once, as they came: {seen:?}");
+        assert!(bench.sees("< 073084088") && bench.sees("frame "));
+        // Elsewhere nothing is listened to for it.
+        bench.press("Device Status");
+        // What is under way ends first.
+        bench.pass_ms(3000);
+        let before = counts(&mut bench).len();
+        bench.pass_ms(3000);
+        assert_eq!(counts(&mut bench).len(), before);
+    });
+}

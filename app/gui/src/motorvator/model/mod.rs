@@ -6,11 +6,11 @@ pub mod servos;
 pub mod stepper;
 pub mod terminal;
 
-use brushwork_link::Event;
-use brushwork_motorvator_client::Half;
+use brushwork_link::{Event, Identity};
+use brushwork_motorvator_client::{Half, is_motorvator};
 
 use crate::family::Own;
-use crate::model::Connection;
+use crate::model::{Connection, Screen};
 use servos::Servos;
 use stepper::Stepper;
 use terminal::Terminal;
@@ -35,6 +35,10 @@ impl Own for MotorvatorConnection {
         self.stepper.take(event, self.half) || is_of_servos
     }
 
+    fn shows_unasked(&self, unit: &Identity, screen: Screen) -> bool {
+        screen == Screen::Terminal && is_motorvator(unit)
+    }
+
     fn rest(&mut self) {
         self.stepper.rest();
     }
@@ -47,7 +51,7 @@ impl Own for MotorvatorConnection {
     fn link_ended(&mut self) {
         self.stepper.give_up();
         self.servos.forget();
-        self.terminal.lines.link_ended();
+        self.terminal.link_ended();
     }
 
     fn not_sent(&mut self, id: u64) {

@@ -4,7 +4,8 @@ use std::rc::Rc;
 
 use brushwork_link::device::{Event, RiskAccepted};
 use brushwork_motorvator_client::{describe_received, describe_sent};
-use brushwork_motorvator_wire::{FRAME_BYTES, LINE_END, Order, line_of_host};
+use brushwork_motorvator_wire::host::HostAnswer;
+use brushwork_motorvator_wire::{FRAME_BYTES, LINE_END, Order, line_of_host, parse_line_of_board};
 
 use crate::command::Command;
 use crate::model::raw_lines::{RawLines, shown};
@@ -13,6 +14,8 @@ use crate::motorvator::messages::BoardMessage;
 
 /// Answers to the terminal's lines begin with this number.
 const FIRST_ID: u64 = 1 << 44;
+/// Bytes of a line that has not ended that are kept.
+const MOST_BEGUN: usize = 256;
 
 /// The state of the screen.
 #[derive(Debug)]
@@ -20,11 +23,22 @@ pub struct Terminal {
     pub lines: RawLines<()>,
     /// The user has the switch of the motors' power at hand, and may start what is in the board's memory.
     pub accepts_risk: bool,
+    /// A line that has not ended yet, and frames that may be the answer to one that was sent.
+    begun: Vec<u8>,
+    heard: Vec<Vec<u8>>,
+    /// Frames that were told as answers.
+    answered: Vec<Vec<u8>>,
 }
 
 impl Default for Terminal {
     fn default() -> Self {
-        Self { lines: RawLines::from_id(FIRST_ID), accepts_risk: false }
+        Self {
+            lines: RawLines::from_id(FIRST_ID),
+            accepts_risk: false,
+            begun: Vec::new(),
+            heard: Vec::new(),
+            answered: Vec::new(),
+        }
     }
 }
 
@@ -106,10 +120,60 @@ impl Terminal {
         Some(Command::Own(Rc::new(StartProgram(RiskAccepted::by_the_user()))))
     }
 
-    /// Takes note of an answer.
+    /// Takes note of an answer, and of what comes by itself.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "no other event has bytes")]
     pub fn note(&mut self, event: &Event) {
         self.lines.note(event, |(), reply| describe_received(reply).text);
+        match event {
+            Event::RawReply { result: Ok(reply), .. } => {
+                self.answered = frames(&mut reply.clone());
+                self.tell_unasked();
+            }
+            Event::RawReply { result: Err(_), .. } => self.tell_unasked(),
+            Event::Traffic { traffic, .. } if !traffic.sent => {
+                self.begun.extend(&traffic.bytes);
+                // A line that never ends is none.
+                let surplus = self.begun.len().saturating_sub(MOST_BEGUN);
+                self.begun.drain(..surplus);
+                self.heard.extend(frames(&mut self.begun));
+                self.tell_unasked();
+            }
+            _ => {}
+        }
     }
+
+    /// Tells frames that a program on the board has sent by itself, once it is known that they answer nothing.
+    fn tell_unasked(&mut self) {
+        if self.lines.is_waiting() {
+            return;
+        }
+        for frame in std::mem::take(&mut self.heard) {
+            if let Some(place) = self.answered.iter().position(|answer| *answer == frame) {
+                self.answered.remove(place);
+                continue;
+            }
+            self.lines.hear((), shown(&frame), describe_received(&frame).text);
+        }
+    }
+
+    /// The link is gone.
+    pub fn link_ended(&mut self) {
+        self.lines.link_ended();
+        (self.begun, self.heard, self.answered) = (Vec::new(), Vec::new(), Vec::new());
+    }
+}
+
+/// Takes the lines that have ended, and keeps those that are frames of a program that is not the host library.
+fn frames(bytes: &mut Vec<u8>) -> Vec<Vec<u8>> {
+    let end = bytes.iter().rposition(|byte| *byte == LINE_END).map_or(0, |place| place + 1);
+    let whole: Vec<u8> = bytes.drain(..end).collect();
+    let lines =
+        whole.split_inclusive(|byte| *byte == LINE_END).map(|line| line.strip_prefix(b"\n").unwrap_or(line));
+    let is_frame = |line: &&[u8]| {
+        let inside = &line[..line.len() - 1];
+        HostAnswer::parse(inside).is_none() && parse_line_of_board(inside).is_some()
+    };
+    lines.filter(is_frame).map(<[u8]>::to_vec).collect()
 }
 
 #[cfg(test)]

@@ -14,6 +14,8 @@ const WORK: Duration = Duration::from_millis(100);
 const ANSWER_BYTES: usize = 28;
 /// The library tells every half second that it runs, while nobody asks; the rest is for a busy computer.
 const BEACON_WITHIN: Duration = Duration::from_millis(1200);
+/// After so many frames of another program the library is not there: it would have told in between.
+const FOREIGN_FRAMES: usize = 2;
 /// The answer to `H`, at the longest. Assumed: nobody has written it down.
 const HELP_BYTES: usize = 128;
 /// Words that only a MotorVator's command line uses (maker's other pages).
@@ -112,6 +114,8 @@ pub fn look(line: &mut Line<'_>) -> Result<Found, ExchangeError> {
         heard = bytes.to_vec();
         match answers(bytes).find(|(answer, _)| answer.version().is_some()) {
             Some((_, end)) => Judgement::Good(end),
+            // Another program that sends again and again never falls silent: it is not waited for.
+            None if foreign_frames(bytes) >= FOREIGN_FRAMES => Judgement::Good(bytes.len()),
             None => Judgement::More(1),
         }
     });
@@ -121,6 +125,17 @@ pub fn look(line: &mut Line<'_>) -> Result<Found, ExchangeError> {
         Err(_) => {}
     }
     Ok(judge(&heard))
+}
+
+/// Frames among bytes that the library does not send.
+fn foreign_frames(heard: &[u8]) -> usize {
+    let lines =
+        heard.split_inclusive(|byte| *byte == LINE_END).filter_map(|line| line.strip_suffix(&[LINE_END]));
+    let lines = lines.map(|line| line.strip_prefix(b"\n").unwrap_or(line));
+    let is_foreign = |line: &&[u8]| {
+        HostAnswer::parse(line).is_none() && brushwork_motorvator_wire::parse_line_of_board(line).is_some()
+    };
+    lines.filter(is_foreign).count()
 }
 
 fn judge(heard: &[u8]) -> Found {
