@@ -94,7 +94,8 @@ pub(super) fn not_connected_text(phase: &Phase) -> String {
 pub(super) fn title_ui(ui: &mut Ui, title: &str, note: &str) {
     ui.horizontal(|ui| {
         focus::heading_ui(ui, title);
-        ui.weak(note);
+        // Where there is too little room it ends in an ellipsis, and the whole of it comes up under the pointer.
+        ui.add(egui::Label::new(RichText::new(note).weak()).truncate());
     });
     ui.add_space(4.0);
 }

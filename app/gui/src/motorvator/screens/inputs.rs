@@ -22,7 +22,7 @@ pub fn inputs_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     if model.front.link.identity().is_none() {
         return nothing_ui(ui, &not_connected_text(&model.front.phase));
     }
-    let note = "The board has its inputs once, for both halves. The host library tells which on/off inputs have changed, and what the analog ones read.";
+    let note = "Once for both halves. The host library tells which on/off inputs have changed, and what the analog ones read.";
     title_ui(ui, "Inputs", note);
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         display_ui(ui, &model.front);
