@@ -128,9 +128,10 @@ fn no_file_names_a_folder_of_somebodys_machine() {
 }
 
 /// The programs that tests start by name, and what has them: packages that every Debian has, or that `tests/run` installs.
-const PROGRAMS: [(&str, &str); 6] = [
+const PROGRAMS: [(&str, &str); 7] = [
     ("Xvfb", "tests/run"),
     ("bash", "bash"),
+    ("dbus-daemon", "tests/run"),
     ("env", "coreutils"),
     ("sh", "dash"),
     ("sleep", "coreutils"),

@@ -24,6 +24,7 @@ mod motion_mind_foreign;
 mod motion_mind_link;
 mod motorvator_safety;
 mod python_package;
+mod screen_reader;
 mod script_command;
 mod scripts;
 mod settings;
