@@ -12,6 +12,7 @@ mod general;
 mod generator;
 mod graph;
 mod graph_place;
+mod jobs;
 mod kept;
 mod keyboard;
 mod language;

@@ -4,6 +4,7 @@
 use std::time::Duration;
 
 use crate::support::bench::Bench;
+use crate::support::hand::Hand;
 use brushwork_gui::family::path::{PathStep, Place, ShownBy, Step};
 use brushwork_gui::family::{self, Family};
 use brushwork_gui::mcp::Mcp;
@@ -45,42 +46,6 @@ fn stored(bench: &Bench, motor: Motor) -> (u32, u32) {
     })
 }
 
-/// A hand that counts its clicks.
-struct Hand {
-    bench: Bench,
-    clicks: usize,
-}
-
-impl Hand {
-    /// Clicks what can be seen: what is scrolled away first is scrolled to, as with a wheel.
-    fn click(&mut self, label: &str) {
-        self.bench.button(label).scroll_to_me();
-        self.bench.pass_ms(600);
-        self.bench.press(label);
-        self.clicks += 1;
-    }
-
-    /// Holds a jog button down.
-    fn hold(&mut self, label: &str, time: Duration) {
-        self.bench.hold(label);
-        self.bench.pass(time);
-        self.bench.let_go(label);
-        self.bench.pass_ms(1500);
-        self.clicks += 1;
-    }
-
-    /// Waits for the end of a run.
-    fn wait_for_run(&mut self) {
-        for _ in 0..120 {
-            self.bench.pass_ms(500);
-            if !self.bench.model().front.tune.is_running() {
-                break;
-            }
-        }
-        self.bench.pass_ms(1500);
-    }
-}
-
 /// A controller with the motor of the examples on both sides.
 fn empty_start() -> Bench {
     holding(None)
@@ -97,8 +62,7 @@ fn holding(settings: Option<Settings>) -> Bench {
 
 #[test]
 fn from_an_empty_start_to_a_tuned_and_saved_axis_by_mouse_alone() {
-    let mut hand = Hand { bench: empty_start(), clicks: 0 };
-    let began = hand.bench.line.clock.now();
+    let mut hand = Hand::on(empty_start());
     hand.bench.pass_ms(300);
     hand.click("Open MCP266");
     hand.bench.pass_ms(4000);
@@ -146,7 +110,7 @@ fn from_an_empty_start_to_a_tuned_and_saved_axis_by_mouse_alone() {
     let left: Vec<_> =
         standings(&mut hand.bench).into_iter().filter(|(_, standing)| standing.is_open()).collect();
     assert!(left.is_empty(), "{left:?}");
-    let took = hand.bench.line.clock.now() - began;
+    let took = hand.took();
     println!("by mouse: {} clicks, {:.0} s", hand.clicks, took.as_secs_f64());
     assert!(hand.clicks < MOST_CLICKS, "{} clicks", hand.clicks);
     assert!(took < MOST_TIME, "{took:?}");

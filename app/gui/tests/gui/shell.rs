@@ -1,6 +1,7 @@
 //! What is always in view: device list, menus, palette, help, marks; and several devices open at once.
 
 use crate::support::bench::{Bench, FRAME, SECOND};
+use crate::support::words;
 use brushwork_gui::actions;
 use brushwork_gui::model::link::Arming;
 use brushwork_gui::model::screen::Screen;
@@ -376,29 +377,9 @@ fn the_mark_at_the_bottom_tells_where_the_settings_are() {
 
 // ---- names and room ----
 
-/// Whatever can be pressed, typed into or dragged and has no name, by its role and place.
+/// Whatever can be used and has no name, by its role and place.
 fn without_a_name(bench: &Bench) -> Vec<String> {
-    let nodes = bench.harness.root().children_recursive();
-    let nameless = nodes.filter(|node| {
-        let node = node.accesskit_node();
-        let acts = matches!(
-            node.role(),
-            Role::Button
-                | Role::CheckBox
-                | Role::RadioButton
-                | Role::Slider
-                | Role::SpinButton
-                | Role::TextInput
-                | Role::MultilineTextInput
-                | Role::ComboBox
-                | Role::MenuItem
-                | Role::MenuItemCheckBox
-                | Role::ListBoxOption
-                | Role::Switch
-        );
-        acts && !node.is_hidden() && node.label().is_none_or(|label| label.trim().is_empty())
-    });
-    nameless.map(|node| format!("{:?} at {:?}", node.accesskit_node().role(), node.rect())).collect()
+    words::without_a_name(&bench.harness)
 }
 
 #[test]

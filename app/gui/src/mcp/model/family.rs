@@ -270,7 +270,7 @@ const PATH: &[PathStep] = &[
         shown_by: ShownBy::Turning,
         place: Place::Drawer(Screen::Pwm, Tab::Direction),
     },
-    PathStep { step: Step::Encoder, shown_by: ShownBy::Counting, place: Place::Settings(&["Encoders"]) },
+    PathStep { step: Step::Encoder, shown_by: ShownBy::Counting, place: Place::Recipe(Goal::Encoder) },
     PathStep { step: Step::Switches, shown_by: ShownBy::Switches, place: Place::Recipe(Goal::Home) },
     PathStep {
         step: Step::Velocity,

@@ -55,6 +55,9 @@ impl GeneralView<'_> {
     }
 
     pub fn open(&mut self, sheet: Sheet) {
+        if let Some(unit) = self.unit_mut() {
+            unit.finish_all_typing();
+        }
         self.profiles.forget_reported();
         if matches!(sheet, Sheet::Backups | Sheet::Compare | Sheet::Save) {
             self.settings.refresh_kept();

@@ -321,6 +321,13 @@ impl UnitSettings {
         }
     }
 
+    /// The same for every field, as where a sheet takes the place of the list and no field is left any more.
+    pub fn finish_all_typing(&mut self) {
+        for key in self.typed.keys().cloned().collect::<Vec<_>>() {
+            self.finish_typing(&key);
+        }
+    }
+
     /// Forgets what was typed and not taken.
     pub fn drop_typing(&mut self, key: &str) {
         self.changed();

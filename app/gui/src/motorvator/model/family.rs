@@ -33,6 +33,10 @@ impl Family for Motorvator {
         Some(Box::<MotorvatorConnection>::default())
     }
 
+    fn simulated_axis(&self) -> &'static str {
+        "Four motors on a battery; the board reads no encoder"
+    }
+
     fn screens(&self, _identity: Option<&Identity>, _known: Known<'_>) -> Vec<Screen> {
         vec![
             Screen::DeviceStatus,

@@ -72,13 +72,15 @@ fn buttons_ui(ui: &mut Ui, general: &mut GeneralView<'_>, family: &dyn Family) {
     let Some(unit) = general.unit() else { return };
     let idle = !general.is_busy();
     let edits = unit.edits().len();
+    // What is still being typed becomes an edit as soon as its field is left, which a click on the button does.
+    let has_edits = edits > 0 || (unit.has_typed() && unit.refused().is_empty());
     let write = if edits == 0 { "Write…".to_owned() } else { SettingMessage::Write { edits }.to_string() };
     let buttons = [
         ("Read…", "Read settings", idle, "Reads the controller's settings again", Sheet::Read),
         (
             write.as_str(),
             "Write settings",
-            idle && edits > 0,
+            idle && has_edits,
             "Shows what will be written, old and new",
             Sheet::Write,
         ),

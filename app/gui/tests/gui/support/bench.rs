@@ -111,6 +111,13 @@ impl Bench {
         Self::keeping_in(kept, Bus::single(unit, StreamIndex::Usb), [1280.0, 800.0], Theme::Dark)
     }
 
+    /// The window is closed, and another one finds what was kept, and this controller at the port.
+    pub fn after_an_exchange(self, unit: Controller) -> Self {
+        let kept = self.kept.clone();
+        drop(self);
+        Self::keeping_in(kept, Bus::single(unit, StreamIndex::Usb), [1280.0, 800.0], Theme::Dark)
+    }
+
     /// A window of 1280 by 800 with Motion Minds at [`MIND`], beside the MCP266.
     pub fn with_minds(minds: Vec<MotionMindConfig>) -> Self {
         Self::with_minds_sized(minds, [1280.0, 800.0], Theme::Dark)

@@ -5,10 +5,12 @@ pub mod alone;
 pub mod bench;
 pub mod causes;
 pub mod cpu;
+pub mod hand;
 pub mod line;
 pub mod lockstep;
 pub mod one;
 pub mod wait;
+pub mod words;
 
 /// Names the families that this window's tests have.
 pub fn install_families() {
