@@ -14,7 +14,7 @@ use brushwork_link::clock::Instant;
 use brushwork_link::device::{ArmScope, DeviceHandle, Event, PollRate, QueuedJob, Request};
 use brushwork_plant::world::WorldAction;
 use crossbeam_channel::TryRecvError;
-use egui::{Context, Ui, ViewportCommand};
+use egui::{Context, Ui, Vec2, ViewportCommand, vec2};
 
 use super::command::{Command, GuidedAction};
 use super::ending::EndBySignal;
@@ -596,10 +596,26 @@ impl App {
         if self.shown != Some(wanted) {
             ctx.set_theme(wanted.theme);
             theme::draw_plainly(ctx, wanted.plain);
-            ctx.set_zoom_factor(f32::from(wanted.scale_percent) / 100.0);
             self.shown = Some(wanted);
         }
+        let zoom = fitting_zoom(ctx.content_rect().size() * ctx.zoom_factor(), wanted.scale_percent);
+        if (zoom - ctx.zoom_factor()).abs() > LEAST_CHANGE_OF_ZOOM {
+            ctx.set_zoom_factor(zoom);
+        }
     }
+}
+
+/// The room that every screen needs, in points.
+const LEAST_SIZE: Vec2 = vec2(1024.0, 700.0);
+/// Below that text cannot be read, whatever room is missing.
+const LEAST_ZOOM: f32 = 0.5;
+/// Less is a matter of rounding, and would have the window drawn again and again.
+const LEAST_CHANGE_OF_ZOOM: f32 = 0.004;
+
+/// As large as is wanted, and no larger than every screen has room for in a window of so many points at 100 %.
+fn fitting_zoom(native: Vec2, scale_percent: u16) -> f32 {
+    let fits = (native.x / LEAST_SIZE.x).min(native.y / LEAST_SIZE.y).max(LEAST_ZOOM);
+    (f32::from(scale_percent) / 100.0).min(fits)
 }
 
 /// When the last frame was drawn, for the device thread to read.
@@ -629,4 +645,28 @@ impl FrameTime {
 fn waker(ctx: Context, last_frame: Arc<FrameTime>) -> Box<dyn Fn() + Send> {
     // Without any wait egui draws two frames.
     Box::new(move || ctx.request_repaint_after(last_frame.until_next().max(Duration::from_millis(1))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_shown_is_as_large_as_wanted_as_far_as_every_screen_has_room() {
+        for (pixels, scale_of_display, wanted, shown) in [
+            (vec2(1280.0, 800.0), 1.0, 100, 1.0),
+            (vec2(1920.0, 1080.0), 1.0, 150, 1.5),
+            // Room for no more than this.
+            (vec2(1280.0, 800.0), 1.0, 200, 1.142),
+            // 150 % on the smallest display, and 200 % on a usual one.
+            (vec2(1024.0, 700.0), 1.5, 100, 0.667),
+            (vec2(1920.0, 1080.0), 2.0, 100, 0.771),
+            (vec2(100.0, 100.0), 1.0, 100, LEAST_ZOOM),
+        ] {
+            let zoom = fitting_zoom(pixels / scale_of_display, wanted);
+            assert!((zoom - shown).abs() < 0.001, "{pixels} at {scale_of_display}: {zoom}");
+            let points = pixels / scale_of_display / zoom;
+            assert!(zoom == LEAST_ZOOM || (points.x >= 1023.9 && points.y >= 699.9), "{points}");
+        }
+    }
 }

@@ -83,8 +83,8 @@ impl eframe::App for Window {
     }
 }
 
-/// The least that every screen has room in.
-const LEAST_SIZE: Vec2 = vec2(1024.0, 700.0);
+/// On a display of 1024 by 700 pixels at 150 % and of 1920 by 1080 at 200 % the window still fits; what it shows is then as small as it has to be.
+const LEAST_WINDOW: Vec2 = vec2(640.0, 420.0);
 
 fn native_options(remembered: &Remembered) -> eframe::NativeOptions {
     let window = remembered.window;
@@ -92,8 +92,8 @@ fn native_options(remembered: &Remembered) -> eframe::NativeOptions {
     let viewport = ViewportBuilder::default()
         .with_title("Brushwork")
         .with_app_id("brushwork")
-        .with_inner_size(size.max(LEAST_SIZE))
-        .with_min_inner_size(LEAST_SIZE)
+        .with_inner_size(size.max(LEAST_WINDOW))
+        .with_min_inner_size(LEAST_WINDOW)
         .with_maximized(window.is_some_and(|window| window.maximized));
     let viewport = match window.and_then(|window| window.at) {
         Some(at) => viewport.with_position(at),
