@@ -425,7 +425,7 @@ fn parse_duty_percent(text: &str) -> Result<f64, String> {
         .parse::<f64>()
         .ok()
         .filter(|percent| (-100.0..=100.0).contains(percent))
-        .ok_or_else(|| format!("\"{text}\" is no duty cycle: use -100 to 100 percent"))
+        .ok_or_else(|| format!("\"{text}\" is no duty: use -100 to 100 percent"))
 }
 
 fn parse_positive(text: &str) -> Result<f64, String> {

@@ -8,7 +8,7 @@ messages! {
     /// What is said of settings, their copies and their backups.
     pub enum CliSettingsMessage {
         StreamUnknown "It is not known which of the controller's streams this port is wired to; if it is one that changes, the link may be lost. A target such as /dev/ttyUSB0,stream=ttl1 says it.",
-        NobodyToAsk { question: String } "{question} Nobody can be asked here: give --yes to do it. Nothing was written.",
+        NobodyToAsk { question: String } "{question} There is no terminal to ask at: give --yes to do it. Nothing was written.",
         StoppedAsking "\nNothing was written.",
         NotWritten "Nothing was written.",
         NoBackupOfThis "There is no backup of this controller yet. `brushwork settings backups` lists those of others.",
@@ -32,7 +32,7 @@ messages! {
         EepromLost "What EEPROM holds is not known. What was written and not saved is lost.",
         Note { note: String } "Note: {note}",
         Wear { wear: Message, limits: &'static str } "Note: {wear} {limits}",
-        RawUndo { before: i64 } "`brushwork settings raw --undo` writes the {before} from before.",
+        RawUndo { before: i64 } "`brushwork settings raw --undo` writes the previous {before}.",
         RawNotReadBack { key: String, date: String, wanted: i64, port: String } "The raw number {wanted} was written to {key} of this controller on {date} and not read back: `brushwork settings read --connect {port}` tells what the register holds.",
         NoRawNumber "No raw number was written to this controller from this computer.",
         NotInProfile "What could not be read is not in the profile.",
@@ -63,7 +63,7 @@ messages! {
         NotStoppedAt { place: String } "{place} was not found to be stopped.",
         NoTarget { target: String, error: TargetError } "Could not understand --connect {target}: {error}.",
         NoneIdentified { seconds: u64 } "Could not connect: no controller identified itself within {seconds} s.",
-        LooksElsewhere "Nobody answers at the address of a new controller: asking at all others.",
+        LooksElsewhere "No unit answers at the address of a new controller: asking at all others.",
         FoundElsewhere { unit: String, place: String } "{unit} answers at {place}.",
         SeveralElsewhere { places: String } "Could not choose a controller: several answer, at {places}. Say which with --address.",
         Closed "The link was closed.",
@@ -72,7 +72,7 @@ messages! {
         NoAnswerWithin { seconds: u64 } "The controller did not answer within {seconds} s.",
         NotMoved { unit: String, port: String, clause: String } "Could not move the motor of {unit} on {port}: {clause}.",
         NoAnswer "The link gave no answer.",
-        NotConfirmedByAll "The stop was written to all of them, but nobody confirmed it. If a motor runs, cut its power.",
+        NotConfirmedByAll "The stop was written to all of them, but none confirmed it. If a motor runs, cut its power.",
         NotConfirmed { seconds: u64 } "Stop was sent, but the controller did not confirm it within {seconds} s. Cut the motor power.",
         By { holder: String } "The line is held by {holder}, which was asked to stop it.",
         HolderHalted { holder: String, process: u32 } "The line is held by {holder}, which was halted by a signal and does not answer. Had it been driving a motor, its guardian would have ended it and stopped the motor; where it has none, which arming had said, the controller's own time-out does. End it (kill -9 {process}) and stop again. If a motor runs, cut its power.",
@@ -91,9 +91,9 @@ messages! {
     pub enum CliUnitsMessage {
         Begins { unit: String } "{unit}:",
         NoneAt { place: String } "No controller was found on {place}.",
-        NotAllThere { addresses: String, place: String } "Nothing was moved: nobody answers at {addresses} on {place}. All that are named have to be there to move together.",
+        NotAllThere { addresses: String, place: String } "Nothing was moved: no unit answers at {addresses} on {place}. All that are named have to be there to move together.",
         Of { unit: String, sentence: String } "{unit}: {sentence}",
-        Silent { addresses: String, place: String } "Nobody answers at {addresses} on {place}.",
+        Silent { addresses: String, place: String } "No unit answers at {addresses} on {place}.",
         NotBegun { units: String } "Not begun on {units}, since it failed before.",
         NotTillTheEnd { units: String, of: usize } "Not done to the end on {units}, of {of} asked for.",
         NoneWritten "Nothing was written to any of them, since this was not to be had from all. Leave out who cannot take it, by --address.",
@@ -105,11 +105,11 @@ messages! {
 messages! {
     /// What is said where controllers are given addresses.
     pub enum CliAddressMessage {
-        NobodyConnects "Nobody is here to connect one unit after the other: give one address at a time.",
+        NobodyConnects "There is no terminal to ask for one unit after the other at: give one address at a time.",
         Connect { address: String } "Connect the unit that is to answer at {address}; no other may be on the line that still waits for its address. Then press Enter.",
         SeveralMeant { units: String, place: String } "Several units answer on {place}, at {units}. Say which is meant with --address, or connect it alone.",
         NotGiven { address: String } "The address {address} was not given, or not saved.",
-        NotThereYet { address: String, old: String } "The address {address} was written, but nobody answers there. Switch the unit off and on, and look at {address} and {old} with `brushwork status`.",
+        NotThereYet { address: String, old: String } "The address {address} was written, but no unit answers there. Switch the unit off and on, and look at {address} and {old} with `brushwork status`.",
     }
 }
 
@@ -135,7 +135,7 @@ messages! {
         FileNotSent { file: String, why: String } "{file} is not sent: {why}.",
         ReadThis "Before you update, read this:",
         Risk { risk: String } "  - {risk}",
-        AcceptRisk "Nobody can be asked here: give --accept-risk to update all the same. Nothing was sent.",
+        AcceptRisk "There is no terminal to ask at: give --accept-risk to update all the same. Nothing was sent.",
         NotSent "Nothing was sent.",
         NotEntered { refused: String } "Could not enter the firmware loader: {refused}",
         LoaderLate "Could not enter the firmware loader: the controller did not get there in time. Nothing was erased.",
@@ -143,7 +143,7 @@ messages! {
         Failed { failure: Failure } "\n{failure}",
         InternalError "Could not send the firmware: an internal error. Please report it.",
         Waiting "Waiting for the controller to come back.",
-        NotBack { why: String } "The controller did not come back, so that nobody knows whether the update is good: {why}",
+        NotBack { why: String } "The controller did not come back, so it is not known whether the update is good: {why}",
     }
 }
 
@@ -223,10 +223,10 @@ messages! {
 messages! {
     /// What of a stop was not reached.
     pub enum CliStopMessage {
-        NotHeard { addresses: String } "Nobody answered at {addresses}: the stop was written there too, and whether it was heard is not known. If a motor runs there, cut its power.",
+        NotHeard { addresses: String } "No unit answered at {addresses}: the stop was written there too, and whether it was heard is not known. If a motor runs there, cut its power.",
         OtherNodes "Nodes that do not answer as a controller that this program knows were told nothing.",
-        Broadcast "Units that do not answer were told to stop by a broadcast, which nobody confirms.",
-        Silent { addresses: String } "Nobody answered at {addresses}; the stop was written to these addresses too.",
+        Broadcast "Units that do not answer were told to stop by a broadcast, which no unit confirms.",
+        Silent { addresses: String } "No unit answered at {addresses}; the stop was written to these addresses too.",
         NotLookedFor { addresses: String } "The stop was written to {addresses} too, where that program may not have looked for units.",
     }
 }

@@ -145,7 +145,7 @@ messages! {
         OneDiffers "1 setting differs from the backup:",
         Differ { count: usize } "{count} settings differ from the backup:",
         NotWaited "it was not waited for.",
-        NobodyAnswered "Nobody answered.",
+        NobodyAnswered "No unit answered.",
         NoThread { error: String } "Could not start the thread that sends the firmware: {error}. Nothing was erased",
     }
 }
@@ -254,7 +254,7 @@ messages! {
 messages! {
     /// Why a motor may get no output.
     pub enum NoOutputMessage {
-        StartedAnew "The controller has started anew, as its counts show, which begin at 0 again: its power was lost for a moment. Check the supply and its leads. What was not saved is forgotten.",
+        StartedAnew "The controller has restarted, as its counts show, which begin at 0 again: its power was lost for a moment. Check the supply and its leads. What was not saved is forgotten.",
         Left "a fault of the bridge that it does not report (a driver fault, a short circuit), a loss of power for a moment, or an input or script that holds the motor. Check the motor and its leads, look at `brushwork status`, and switch the controller off and on before the next try.",
         LeftOfLoop "a fault of the bridge that it does not report (a driver fault, a short circuit), a loss of power for a moment, gains or a full speed (QPPS) of 0, or an input or script that holds the motor. Check the motor and its leads, look at `brushwork status`, and switch the controller off and on before the next try.",
         Untold { left: Message } "This firmware does not tell its status, so the reason is not known; it may be {left}",

@@ -203,7 +203,7 @@ fn a_profile_for_another_controller_is_upgraded_only_when_that_is_agreed_to() {
             "The profile was made for the MCP266 (2x60A), the connected controller is the MCP263 (2x60A).",
         )
         .explains("Main battery maximum 60.0 V is above the MCP263's 34.0 V. 34.0 V is used instead.")
-        .explains("Use the profile with these changes? Nobody can be asked here");
+        .explains("Use the profile with these changes? There is no terminal to ask at");
     settings(&["import", name(&file), "--yes", "-c", "sim:mcp263"])
         .ended_with(DONE)
         .explains("34.0 V is used instead.")

@@ -117,7 +117,7 @@ fn scripts_of_several_are_loaded_one_by_one_and_run_and_end_together() {
     let json = script(&["status", "--json"], "all").ended_with(DONE).json();
     assert_eq!(each(&json, "/result/autorun_delay_ms"), [Value::Null, Value::from(500)]);
     let refused = script(&["start", "--for", "5"], "0x80-0x82").ended_with(NO_LINK);
-    refused.explains("Nobody answers at 0x82 on");
+    refused.explains("No unit answers at 0x82 on");
     let started = script(&["start", name(&file), "--simulated", "--for", "0.3"], "0x80-0x81");
     started.ended_with(DONE);
     let json = brushwork(&line, &["status", "--address", "all", "--json"]).ended_with(DONE).json();
@@ -219,7 +219,7 @@ fn boards_of_a_rover_are_driven_together_on_one_line_and_on_two_or_not_at_all() 
     }
     brushwork(&line, &on("0x80-0x83"))
         .ended_with(NO_LINK)
-        .explains("Nothing was moved: nobody answers at 0x83 on");
+        .explains("Nothing was moved: no unit answers at 0x83 on");
     let other = rover();
     // One of the second line has no time-out.
     let write = ["settings", "write", "unit.serial_timeout=1", "--address", "0x80-0x81", "--yes"];
@@ -257,7 +257,7 @@ fn several_boards_are_watched_with_a_line_for_each_and_the_silent_one_is_named()
     let addresses: Vec<_> = seen.iter().map(|(address, _)| address.clone()).collect();
     assert_eq!(addresses, [0x80, 0x81, 0x80, 0x81, 0x80, 0x81]);
     assert!(seen[4..].iter().all(|(_, is_read)| *is_read), "both are read: {seen:?}");
-    assert!(ending.stderr.join(" ").contains("Nobody answers at 0x82 on"), "{ending:?}");
+    assert!(ending.stderr.join(" ").contains("No unit answers at 0x82 on"), "{ending:?}");
 }
 
 #[test]

@@ -178,7 +178,7 @@ pub fn settings(count: usize) -> Message {
 messages! {
     /// What is tried, as a bare verb phrase, in failures and as the name of a job.
     pub enum ActMessage {
-        LearnAnew "learn anew what its firmware answers",
+        LearnAnew "learn again what its firmware answers",
         FindController "find a controller",
         ListPorts "list the serial ports",
         Read { phrase: String } "{phrase}",

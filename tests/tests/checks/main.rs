@@ -9,3 +9,4 @@ mod limited;
 mod map;
 mod messages;
 mod tidy;
+mod words;

@@ -122,7 +122,7 @@ fn stop_without_an_address_stops_every_unit_of_the_line_and_says_which_and_who_d
         assert!(ending.stdout.iter().any(|sentence| sentence.starts_with(&reported)), "{ending:?}");
     }
     let said = ending.stderr.join(" ");
-    assert!(said.contains("Nobody answered at 0x82 to 0x84, 0x86, 0x87"), "{said}");
+    assert!(said.contains("No unit answered at 0x82 to 0x84, 0x86, 0x87"), "{said}");
     line.set_all_going();
     let reported = json(&run(&["stop", "--connect", &text(&line.port()), "--json"]));
     assert_eq!(reported["confirmed"], true);
@@ -144,7 +144,7 @@ fn stop_with_addresses_stops_these_alone_and_names_the_one_that_does_not_answer(
     assert_eq!(ending.status.code(), Some(NO_LINK), "{ending:?}");
     wait::until("all at rest", || line.driven() == [false; 3], || format!("{:?}", line.driven()));
     let said = ending.stderr.join(" ");
-    assert!(said.contains("Nobody answered at 0x86: the stop was written there too"), "{said}");
+    assert!(said.contains("No unit answered at 0x86: the stop was written there too"), "{said}");
     let ending = run(&["stop", "--connect", &port, "--address", "0x80,5"]);
     assert_eq!(ending.status.code(), Some(USAGE), "{ending:?}");
 }

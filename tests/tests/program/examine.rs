@@ -384,7 +384,10 @@ fn the_command_reads_where_nobody_can_be_asked_and_the_served_imitation_calls_it
     let sentence = |key: &str| found.answer(key).expect("a question").worded.clone();
     assert_eq!(found.answer("guessed_reads").map(|answer| answer.state), Some(State::Answered));
     for key in ["longer_payload", "loop_rate", "save_restarts"] {
-        assert!(sentence(key).contains("nobody could be asked") && sentence(key).contains("--yes"), "{key}");
+        assert!(
+            sentence(key).contains("there was no terminal to ask at") && sentence(key).contains("--yes"),
+            "{key}"
+        );
     }
     assert!(std::fs::read_to_string(&text).expect("it was written").contains("Calls itself  MCP233 2x30A"));
     let kept = run(&["examine", "--connect", target, "--json", &json]);

@@ -162,7 +162,7 @@ fn a_unit_that_lost_its_power_for_a_moment_is_never_passed_over() {
             driven.run(3 * SECOND);
             println!("{name}, {lost_ms} ms: {:?}, {:?}", driven.findings, driven.disarmed);
             if driven.disarmed.is_empty() {
-                wrong.extend(driven.wrong(Kind::StartedAnew, &["started anew", "supply"]));
+                wrong.extend(driven.wrong(Kind::StartedAnew, &["has restarted", "supply"]));
             }
         }
     }

@@ -17,7 +17,7 @@ use super::settings::ask::{is_yes, line};
 use super::work::{self, Moves};
 use super::{Client, Exit, Interrupt, NewFile, Output, say};
 
-const NOBODY: &str = "Not asked: nobody could be asked whether it may be, and --yes did not name its step.";
+const NOBODY: &str = "Not asked: there was no terminal to ask at, and --yes did not name its step.";
 const REFUSED: &str = "Not asked: the owner did not agree.";
 const ENDED: &str = "Not asked: the examination was ended before.";
 const FAILED: &str = "Not asked: its step could not be taken to the end.";

@@ -91,7 +91,7 @@ impl Family for MotionMindCommands {
                 "Each write to EEPROM stops the motor for up to 40 ms; in mode 3 it does not start again by itself.",
             ),
             Act::Reload => Some(
-                "A Motion Mind starts anew for it: its motor stops, and its position is 0 unless POSPWRUP is set.",
+                "A Motion Mind restarts for it: its motor stops, and its position is 0 unless POSPWRUP is set.",
             ),
             Act::RestoreDefaults => Some(
                 "RESTORE writes RAM and EEPROM and stops the motor; the unit answers at address 1 afterwards.",

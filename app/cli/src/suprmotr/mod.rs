@@ -90,7 +90,7 @@ impl Family for SuprMotrCommands {
     fn note_of(&self, act: &Act) -> Option<&'static str> {
         match act {
             Act::Reload => Some(
-                "A SuprMotr starts anew for it (RT): its position is 0 afterwards, and it is refused where a macro 0 would run.",
+                "A SuprMotr restarts for it (RT): its position is 0 afterwards, and it is refused where a macro 0 would run.",
             ),
             Act::RestoreDefaults => {
                 Some("The factory values of the manual are written into RAM, one by one; the address stays.")

@@ -61,7 +61,7 @@ impl Record {
         match self {
             Self::Backup => "Without it nothing is changed on the controller",
             Self::Journal => {
-                "Without it nothing is changed on the controller, since nobody could tell what a change that is cut short has left"
+                "Without it nothing is changed on the controller, since what a change that is cut short has left could not be told"
             }
             Self::Wear => "How often this EEPROM was written is not known for certain then",
             Self::Eeprom => "What this EEPROM holds counts as not known then",
@@ -69,8 +69,8 @@ impl Record {
                 "Neither `settings raw --undo` nor the report of `examine` knows that number then"
             }
             Self::Update => "A controller that waits in its firmware loader would not be known for that",
-            Self::Capabilities => "It is learned anew at the next connection",
-            Self::Loan => "If this program died within a stop, nobody would offer to give that back",
+            Self::Capabilities => "It is learned again at the next connection",
+            Self::Loan => "If this program died within a stop, nothing would offer to give that back",
             Self::Notes => "What was typed stays in the window until it is closed",
         }
     }
@@ -85,7 +85,7 @@ impl Record {
                  (`brushwork settings compare backup ram`). `brushwork settings unfinished --forget` puts the file aside"
             }
             Self::Wear => {
-                "So how often this EEPROM was written is not known; the next save counts anew and puts the file aside"
+                "So how often this EEPROM was written is not known; the next save begins a new count and puts the file aside"
             }
             Self::Eeprom => "So what this EEPROM holds counts as not known",
             Self::RawWrites => "So the numbers that were written raw before are not known",
@@ -93,7 +93,7 @@ impl Record {
                 "So whether a firmware update was begun here and did not end is not known: a controller that does not answer may wait \
                  in its firmware loader"
             }
-            Self::Capabilities => "It is learned anew",
+            Self::Capabilities => "It is learned again",
             Self::Loan => {
                 "So registers of this controller may still hold what a stop has changed for a while"
             }

@@ -209,7 +209,7 @@ impl Sequence {
             Stage::Preparing => "Reading what the controller holds",
             Stage::Arming => "Arming",
             Stage::Running => self.texts.last().map_or("Waiting for its turn", |(text, _)| text),
-            Stage::Restoring => "Putting the gains from before back",
+            Stage::Restoring => "Putting the previous gains back",
         }
     }
 

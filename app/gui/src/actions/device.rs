@@ -78,7 +78,7 @@ pub(super) const ACTIONS: &[Action] = &[
         Keys::None, |model| has(model, Ability::SecondMotor, connected), |_| Command::ZeroEncoder(Motor::M2)),
     entry!(Device 5 "device.reset-estop", "Reset Emergency Stop (E-Stop)", "Ends an emergency stop where the controller lets software do so.",
         Keys::None, |model| has(model, Ability::EmergencyStop, connected), |_| Command::ResetEmergencyStop),
-    entry!(Device 5 "device.learn-anew", "Learn Its Commands Anew", "Forgets which commands this firmware has and lacks, here and on this computer, and asks for them again.",
+    entry!(Device 5 "device.learn-anew", "Learn Its Commands Again", "Forgets which commands this firmware has and lacks, here and on this computer, and asks for them again.",
         Keys::None, disarmed, |_| Command::LearnAnew),
     entry!(Device 5 "device.raw", "Raw Settings…", "Writes one number to a register whose meaning is not public, at your own risk, with a backup before and an undo after.",
         Keys::None, connected, |_| Command::OpenRaw),

@@ -91,7 +91,7 @@ pub(super) const EDIT: &[Action] = &[
 ];
 
 pub(super) const VIEW: &[Action] = &[
-    switch!(hidden "view.hidden", "Hidden Characters", ToggleHidden, "Shows spaces, tabs, line ends and characters that nobody sees in the MCL program."),
+    switch!(hidden "view.hidden", "Hidden Characters", ToggleHidden, "Shows spaces, tabs, line ends and invisible characters in the MCL program."),
     switch!(current_line "view.current-line", "Highlight Current Line", ToggleCurrentLine, "Highlights the line of the caret."),
     switch!(folding "view.folding", "Folding Lines", ToggleFolding, "Shows beside the text what can be folded away."),
     row!(View 4, "view.fold", "Fold or Unfold Block", in_text_key(CTRL, Key::OpenBracket), on_mcl, MclAction::ToggleFoldHere, "Folds the block of the caret away, or brings it back."),

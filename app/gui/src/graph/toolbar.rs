@@ -394,7 +394,7 @@ fn open_ui(ui: &mut Ui, graph: &mut LiveGraph) {
     if let Some(text) = graph.files.loading_text() {
         ui.horizontal(|ui| {
             ui.label(text);
-            if ui.button("Give up").clicked() {
+            if ui.button("Cancel").clicked() {
                 graph.files.give_up_loading();
             }
         });

@@ -42,6 +42,6 @@ messages! {
         WritingPage { page: usize, of: usize } "Writing page {page} of {of}.",
         BlocksAnswered { byte: u8 } "each block answered with 0x{byte:02X}, whose meaning is not public",
         Sent { bytes: usize, seconds: f64, verified: String, foreign: &'static str } "{bytes} bytes in {seconds:.1} s, {verified}. Start Script runs it.{foreign}",
-        SettingsKept { backup: String } "The settings from before are kept: {backup}.",
+        SettingsKept { backup: String } "The previous settings are kept: {backup}.",
     }
 }

@@ -313,7 +313,7 @@ const CLAW_INPUTS: &[&str] = &[
     "roboclaw.s2.reverse_deadband",
     "roboclaw.s2.forward_deadband",
 ];
-const CLAW_MODE: &str = "It counts from the next power up, and ends a connection by S1 and S2 then; USB goes on. Baud rate and address become \
+const CLAW_MODE: &str = "It counts from the next power-up, and ends a connection by S1 and S2 then; USB goes on. Baud rate and address become \
                          options: look at them below.";
 
 const SWITCH_AT_PIN: Wiring =

@@ -93,7 +93,7 @@ static RECIPES: &[Recipe] = &[
     Recipe {
         job: Goal::Outputs,
         text: "CT makes an output of a channel, CN and CF switch it on and off. The analog output (SO) gives 0 to 5 V with at most 2 mA at J3 pin 17, which is channel 10 \
-               otherwise. Outputs drive logic: a relay or a lamp wants a transistor, a coil also a diode.",
+               otherwise. Outputs drive logic: a relay or a light wants a transistor, a coil also a diode.",
         consequence: "Two drivers on one line may damage both: see that nothing else drives a channel before it becomes an output.",
         asks: &[],
         sets: &[],

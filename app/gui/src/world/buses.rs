@@ -76,7 +76,7 @@ fn peer_ui(ui: &mut Ui, view: &WorldView, actions: &mut Actions) {
 
 fn title(peer: CanPeer) -> &'static str {
     match peer {
-        CanPeer::Absent => "nobody",
+        CanPeer::Absent => "no node",
         CanPeer::Listening => "listens",
         CanPeer::Echoing => "sends back what it hears",
     }

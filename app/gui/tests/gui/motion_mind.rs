@@ -276,7 +276,7 @@ fn a_register_is_written_to_ram_and_then_stored_and_what_differs_is_marked() {
     assert!(bench.sees("PTERM in RAM: 7000"));
     bench.press("Save to EEPROM");
     assert!(bench.sees_part("The motor stops while the EEPROM is written"));
-    bench.press("Store");
+    bench.press("Save");
     bench.pass_ms(8000);
     let reported: Vec<_> = bench.model().messages.past().map(|message| message.text.to_string()).collect();
     assert_eq!(eeprom(&bench, "PTERM"), 7000, "{reported:?}");

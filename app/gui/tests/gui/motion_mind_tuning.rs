@@ -146,7 +146,7 @@ fn a_velocity_loop_is_tuned_applied_verified_saved_and_undone() {
     assert_holds(&bench, wanted);
     press_below(&mut bench, "Save…");
     assert!(bench.sees_part("The motor stops while the EEPROM is written"));
-    bench.press("Store");
+    bench.press("Save");
     bench.pass_ms(9000);
     let stored = bench.minds.with(|bus| bus.motion_minds()[0].stored(4));
     assert_eq!(stored, i64::from(wanted.pterm), "{:?}", bench.said());

@@ -430,11 +430,11 @@ fn the_buses_stand_with_the_ports_whose_lines_they_share() {
 fn a_script_on_power_up_is_switched_by_a_box_over_its_delay() {
     let mut bench = opened();
     bench.press("Section Scripting");
-    bench.press("Execute script on power up");
+    bench.press("Execute script on power-up");
     write(&mut bench);
     let delay = |bench: &Bench| bench.line.with(|bus| bus.controllers()[0].settings()).unit.script_autorun_ms;
     assert_eq!(delay(&bench), 100);
-    bench.press("Execute script on power up");
+    bench.press("Execute script on power-up");
     write(&mut bench);
     assert_eq!(delay(&bench), 0);
 }

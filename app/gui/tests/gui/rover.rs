@@ -578,13 +578,13 @@ fn commands_that_were_taken_for_absent_are_learned_anew_from_the_menu_and_the_st
     bench.pass_ms(8000);
     assert!(bench.sees_part("This firmware does not have"), "{:?}", bench.said());
     bench.line.with(|bus| bus.controllers_mut()[0] = unit(&[]));
-    from_menu(&mut bench, "Learn Its Commands Anew");
+    from_menu(&mut bench, "Learn Its Commands Again");
     bench.pass_ms(4000);
     assert!(!bench.sees_part("This firmware does not have"));
     bench.line.with(|bus| bus.controllers_mut()[0] = unit(&[number::READ_TEMPERATURE_1]));
-    bench.button("Learn Anew").scroll_to_me();
+    bench.button("Learn Again").scroll_to_me();
     bench.pass_ms(300);
-    bench.press("Learn Anew");
+    bench.press("Learn Again");
     bench.pass_ms(40_000);
     assert!(
         bench.sees_part("This firmware does not have"),

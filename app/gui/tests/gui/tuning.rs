@@ -742,7 +742,7 @@ fn a_link_that_is_lost_in_a_run_teaches_too_and_another_try_succeeds() {
     bench.press("Connect");
     bench.pass_ms(5000);
     assert_eq!(held(&bench, Motor::M1), before);
-    assert!(bench.said().iter().any(|text| text.contains("The gains of M1 from before the run are back.")));
+    assert!(bench.said().iter().any(|text| text.contains("The previous gains of M1 are back.")));
     bench.press("Velocity Settings");
     assert!(bench.sees_part("M1 was not tuned"), "{:?}", bench.said());
     assert!(bench.sees_part("Sketch: The cable to the controller is open"));

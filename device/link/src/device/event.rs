@@ -252,7 +252,7 @@ impl fmt::Display for DisarmReason {
             Self::SettingsChanged => {
                 f.write_str("Disarmed: a time-out, stream, priority or address was changed")
             }
-            Self::Restarted => f.write_str("Disarmed: the controller has started anew"),
+            Self::Restarted => f.write_str("Disarmed: the controller has restarted"),
             Self::NoAnswer => f.write_str(
                 "Disarmed: the controller does not answer any more: check its power, its cable and the line",
             ),

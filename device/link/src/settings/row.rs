@@ -68,7 +68,7 @@ impl Group {
     pub const CURRENT_LIMITS: Self = Self::new(30, "current_limits", "Current limits");
     /// Which input commands the motors.
     pub const PRIORITY_LEVELS: Self = Self::new(40, "priority_levels", "Priority levels");
-    /// Running a script after power up.
+    /// Running a script after power-up.
     pub const SCRIPTING: Self = Self::new(50, "scripting", "Scripting");
     /// Which pin is the encoder of a motor.
     pub const ENCODERS: Self = Self::new(60, "encoders", "Encoders");

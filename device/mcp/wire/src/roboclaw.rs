@@ -95,7 +95,7 @@ pub static CONTROL_MODES: &[Code] = &[
 /// Main battery cut-off: bits 2 to 4 of the configuration word.
 pub static BATTERY_MODES: &[Code] = &[
     code(0, "user", "User limits"),
-    code(1, "auto", "Detected at power up"),
+    code(1, "auto", "Detected at power-up"),
     code(2, "2_cells", "2 LiPo cells"),
     code(3, "3_cells", "3 LiPo cells"),
     code(4, "4_cells", "4 LiPo cells"),
@@ -188,7 +188,7 @@ impl ConfigWord {
         matches!(self.mode(), ControlMode::SimpleSerial | ControlMode::PacketSerial)
     }
 
-    /// Bits 2 to 4: 0 for the unit's own limits, 1 for detection at power up, else a number of cells.
+    /// Bits 2 to 4: 0 for the unit's own limits, 1 for detection at power-up, else a number of cells.
     pub fn battery(self) -> u16 {
         self.0 >> 2 & 0b111
     }
@@ -319,7 +319,7 @@ pub struct SwitchFunction {
     pub reverse: bool,
     /// It sets the encoder to 0.
     pub home: bool,
-    /// The motor looks for it at power up.
+    /// The motor looks for it at power-up.
     pub auto: bool,
 }
 

@@ -40,7 +40,7 @@ commands! {
     WRITE_STORE Some('S'), "WRITE_STORE" &["register", "value"], "change a register in RAM and EEPROM; stops the motor";
     READ None, "READ" &["mask"], "read the registers whose bits are set, lowest first; in text R reads one, or the bits or all by index 97 to 99";
     RESTORE Some('X'), "RESTORE" &[], "factory values in RAM and EEPROM; stops the motor";
-    RESET Some('Y'), "RESET" &[], "start the firmware anew, which loads EEPROM; stops the motor";
+    RESET Some('Y'), "RESET" &[], "restart the firmware, which loads EEPROM; stops the motor";
     READ_REGISTER Some('R'), "READ REGISTER" &["register"], "read one register";
 }
 

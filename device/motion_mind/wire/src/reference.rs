@@ -136,7 +136,7 @@ const HEAD: &str = "Motion Mind 3: both serial protocols (Motion Mind manual, ch
 Binary: command, address, data (least significant byte first), sum of all bytes before it. Bytes of a frame come within 5 ms\n\
 of each other; leave 5 ms between frames. An accepted frame is acknowledged with 06; anything else is met with silence.\n\
 Text: a letter, the address in two digits, a space, the index of a register, a space, a number, CR LF. OK or BAD COMMAND.\n\
-Address 99 is every unit; nobody answers. The return bits of FUNCTION put POSITION, VELOCITY and TIME in place of the\n\
+Address 99 is every unit; none answers. The return bits of FUNCTION put POSITION, VELOCITY and TIME in place of the\n\
 acknowledge of every command but reads and writes. Z, the self-test, is never sent: a unit needs a power cycle after it.\n";
 
 fn command_entry(row: &CommandRow) -> CommandEntry {

@@ -8,7 +8,7 @@ messages! {
     pub enum MotorvatorSettingsMessage {
         NoAddress { address: UnitAddress } "{address} is no MotorVator's",
         ValuesDoNotFit "the order does not take the values",
-        Volatile "The host library keeps them until it begins anew; for a program of your own, put the ConfigStepper line into it.",
+        Volatile "The host library keeps them until it restarts; for a program of your own, put the ConfigStepper line into it.",
         HoldHeats { percent: i64 } "A stepper that stands takes {percent} % of full power all the time, and gets warm.",
     }
 }
@@ -67,6 +67,6 @@ messages! {
         CheckBaudRate "Check the baud rate, which the manual does not tell",
         RunLibrary "Put the host library on the board with the maker's compiler (assets/mecc/host.mecc), and start it with G",
         WriteIntoProgram "Put the ConfigStepper line into your program",
-        StartAnew "Start the host library anew with G",
+        StartAnew "Restart the host library with G",
     }
 }

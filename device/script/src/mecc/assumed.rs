@@ -5,7 +5,7 @@ pub const ASSUMED: &[&str] = &[
     "Values are Words, and every operator gives a Word: 3 - 5 is 65534. So differences of GetClock() are right across 65535, as the manual's \
      WaitClock needs them.",
     "The lowest byte of a Word comes first in memory. The first global lies at byte 0; behind the last there are zeros.",
-    "What is declared between Begin Program and End Program is a global. What a function or a handler declares is its own, and begins anew \
+    "What is declared between Begin Program and End Program is a global. What a function or a handler declares is its own, and begins again \
      at each call; a function may call itself.",
     "A function gives what Return says, or what its name was set to; without either 0.",
     "While ends with End While. Mod stands between its values. And, Or and Not take 0 for false and give 0 or 1.",

@@ -101,7 +101,7 @@ pub const OPERATORS: [(&str, &str, Source); 7] = [
 /// Words that exist by the maker's pages, which do not show how they are used.
 pub const FORM_UNKNOWN: [(&str, &str); 2] = [
     ("include", "Put the text of the other file here."),
-    ("randomise", "Take GetClock() Mod a number for one that nobody foresees."),
+    ("randomise", "Take GetClock() Mod a number for one that cannot be foreseen."),
 ];
 
 /// Words of other languages, in small letters, and what stands for them here.

@@ -88,7 +88,7 @@ messages! {
         CheckBaudRate "Check the baud rate: 9600, 19200 or 38400",
         CheckPower "See that it has power, and connect again",
         StopFirst "Stop it first: Stop ends macros and repeated lines",
-        SetTarget "Define the target anew by hand, for example with DH, or turn the motor back",
+        SetTarget "Define the target again by hand, for example with DH, or turn the motor back",
         FreeTheAxis "See what holds the axis, and arm again",
         EraseMacro "Erase it (RZ), or switch the power off and on yourself",
     }

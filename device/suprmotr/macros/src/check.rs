@@ -359,7 +359,7 @@ impl<'a> Checker<'a> {
         });
         if let Some(at) = moves.filter(|_| !waits) {
             let name = commands[at].mnemonic.name();
-            self.say(codes::NO_WAIT, places[at], format!("The loop begins anew before {name} has ended."));
+            self.say(codes::NO_WAIT, places[at], format!("The loop begins again before {name} has ended."));
             self.hint("Put WS behind the move.");
         }
         for (at, command) in body.iter().enumerate() {

@@ -127,7 +127,7 @@ impl fmt::Display for Selection {
         match self {
             Self::Unit(address) => address.fmt(f),
             Self::All => f.write_str("all units"),
-            Self::Nobody(character) => write!(f, "nobody ({character:02X})"),
+            Self::Nobody(character) => write!(f, "no unit ({character:02X})"),
         }
     }
 }

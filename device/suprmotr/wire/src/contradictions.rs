@@ -30,7 +30,7 @@ contradictions! {
     3 "Address Selection, Short Form" "DA defines the address; DB does" => "DB; DA is the acceleration";
     4 "Address Selection" "the address is kept in EEPROM; or read from channels 14 to 16 at reset" => "EEPROM; the pins are an option of the simulator";
     5 "Address Selection" "01 35 54 54 13 selects and asks; 13 is no hexadecimal number there" => "01 35 54 54 0D";
-    6 "Address Selection" "a board is set to address 5, and key 4 is pressed" => "meant as it stands: nobody answers";
+    6 "Address Selection" "a board is set to address 5, and key 4 is pressed" => "meant as it stands: no unit answers";
     7 "Character description" "the columns of decimal and hexadecimal numbers" => "their headings are swapped";
     8 "Reply Termination, examples" "0P0:+0000020002, 5p0:+000300, 5T:+0000000000 and T:" => "the first is sent unless another form is chosen; all are read";
     9 "Command Reference, examples" "the letter O stands for the address 0" => "the digit 0";

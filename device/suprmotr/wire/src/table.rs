@@ -232,7 +232,7 @@ commands! {
     GL "Get Integral Limit", NOTHING, number_or(b'L', b'M'), Report, Section, "limit of the integral as set";
     SM "Set Maximum Following Error", needs("distance", Unit::Counts, 0, 32_767), Reports::Nothing, Setting, Section, "most that the position may lag behind; nothing tells it";
     BR "Define Baud Rate", needs("rate", Unit::None, 0, 2), Reports::Nothing, Lasting, Section, "0: 9600, 1: 19200, 2: 38400";
-    RT "Reset Controller", NOTHING, Reports::Nothing, Run, Section, "starts anew as at power-up: stored values, no address selected; macro 0 runs";
+    RT "Reset Controller", NOTHING, Reports::Nothing, Run, Section, "restarts as at power-up: stored values, no address selected; macro 0 runs";
     EF "Echo Off", NOTHING, Reports::Nothing, Setting, Section, "received characters no longer come back";
     EN "Echo On", NOTHING, Reports::Nothing, Setting, Section, "every received character comes back";
     MN "Motor On", NOTHING, Reports::Nothing, Motion, Section, "the loop holds the motor, at the target it had when it was switched off: it may jump there";

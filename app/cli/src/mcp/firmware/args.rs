@@ -49,7 +49,7 @@ pub struct InfoArgs {
     brushwork firmware update mcp266.bin --connect /dev/ttyACM0 --resume --model mcp266\n\n\
     The risks are shown first and have to be accepted, by typing \"update\" or with --accept-risk. The settings are read into a \
     backup before anything is erased. Ctrl-C ends the update only as long as nothing was erased. Afterwards the controller is \
-    connected again: its version and its settings are compared with those of before.\n\n\
+    connected again: its version and its settings are compared with the earlier ones.\n\n\
     Exit codes: 0 updated and the settings are those of the backup; 5 the version did not change, or is not the image's; 6 updated, and \
     settings differ; 3 it did not come back. A controller that does not come back: switch it off and on, then --resume. To practise \
     that: brushwork sim --control, and \"power cycle\" on its standard input.")]

@@ -176,7 +176,7 @@ fn done_ui(ui: &mut Ui, text: &str, firmware: &Firmware, connected: bool, comman
         }
         None => drop(ui.label(
             RichText::new(
-                "The image was sent, and the controller did not come back: nobody knows whether the update is good. Switch it off and \
+                "The image was sent, and the controller did not come back: it is not known whether the update is good. Switch it off and \
                  on, then connect. If it does not answer, resume the update.",
             )
             .color(Palette::of(ui).error),

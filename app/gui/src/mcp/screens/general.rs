@@ -73,7 +73,7 @@ fn autorun_ui(ui: &mut Ui, general: &mut GeneralView<'_>) {
     let mut runs = delay_ms >= SHORTEST_AUTORUN_MS;
     ui.horizontal(|ui| {
         ui.allocate_space(vec2(MARK_WIDTH, HEIGHT));
-        if ui.checkbox(&mut runs, "Execute script on power up").changed() {
+        if ui.checkbox(&mut runs, "Execute script on power-up").changed() {
             unit.set_number(DELAY, if runs { SHORTEST_AUTORUN_MS as f64 } else { 0.0 });
         }
     });

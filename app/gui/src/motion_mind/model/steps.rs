@@ -93,7 +93,7 @@ pub const STAGES: [Stage; 5] = [
     },
     Stage {
         title: "Other steps",
-        text: "Try larger and smaller steps with all settings. When they are good, keep them: Store to EEPROM on the \
+        text: "Try larger and smaller steps with all settings. When they are good, keep them: Save to EEPROM on the \
                Registers screen.",
         changes: &[P_UP, P_DOWN, I_UP, I_DOWN, D_UP, D_DOWN, STRONGER, WEAKER],
     },

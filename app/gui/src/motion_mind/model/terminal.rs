@@ -129,7 +129,7 @@ impl Understood {
                 "This brings back the factory's values in RAM and EEPROM and stops the motor. A backup is made first.",
             ),
             Command::Reset => {
-                Some("This starts the unit anew and stops the motor: what is in RAM alone is lost.")
+                Some("This restarts the unit and stops the motor: what is in RAM alone is lost.")
             }
             _ => None,
         }

@@ -8,10 +8,10 @@ use crate::family::SettingsWords;
 pub(super) static WORDS: SettingsWords = SettingsWords {
     title: "Registers",
     many: "rows",
-    save: "Store to EEPROM…",
-    save_now: "Store",
-    save_text: "Stores what the unit works with now, register by register, only those that differ or whose EEPROM is not known, \
-                then makes the unit load its EEPROM and compares. The EEPROM lasts about a million writes: do not store in a loop.",
+    save: "Save to EEPROM…",
+    save_now: "Save",
+    save_text: "Saves what the unit works with now, register by register, only those that differ or whose EEPROM is not known, \
+                then makes the unit load its EEPROM and compares. The EEPROM lasts about a million writes: do not save in a loop.",
     save_warning: Some("The motor stops while the EEPROM is written, up to 40 ms for each register."),
     defaults: "Restore…",
     defaults_now: "Restore factory values",
@@ -21,7 +21,7 @@ pub(super) static WORDS: SettingsWords = SettingsWords {
         "The motor stops, and what the EEPROM held is lost. A backup of the registers is made first.",
     ),
     reload_text: "Load from EEPROM resets the unit, which loads its EEPROM as at power-up, then reads that. The motor stops. \
-                  What the unit works with now and was not stored is lost.",
+                  What the unit works with now and was not saved is lost.",
 };
 
 /// What to do about a refused tuning run, where it is another thing, or in another place, than with an MCP.

@@ -37,10 +37,10 @@ const GUIDE: [(&str, &[&str]); 8] = [
     (
         "RAM and EEPROM",
         &[
-            "Registers shows both side by side. Write sends edits to RAM, with a backup before and everything read back. Store to EEPROM \
+            "Registers shows both side by side. Write sends edits to RAM, with a backup before and everything read back. Save to EEPROM \
              writes register by register those that differ; the motor stops for up to 40 ms each time. An EEPROM lasts about a million \
              writes.",
-            "No command reads EEPROM. It is known after a store, or after Load from EEPROM, which starts the unit anew and stops the motor.",
+            "No command reads EEPROM. It is known after a save, or after Load from EEPROM, which restarts the unit and stops the motor.",
             "Restore brings the factory's values back, in RAM and in EEPROM, and the address 1 with them.",
         ],
     ),

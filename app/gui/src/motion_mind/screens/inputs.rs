@@ -180,7 +180,7 @@ fn stage_ui(ui: &mut Ui, model: &mut Model, count: Option<i64>, is_position: boo
             if ui.add(Button::new(button_text(stage))).clicked() {
                 reported = model.front.mind_mut().radio.go_on(count).err();
             }
-            if ui.button("Give up").clicked() {
+            if ui.button("Cancel").clicked() {
                 model.front.mind_mut().radio.give_up();
             }
         }

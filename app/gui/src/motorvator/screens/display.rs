@@ -70,7 +70,7 @@ fn source_ui(ui: &mut Ui, is_told: bool) {
     let source = if is_told {
         "As the host library tells them: it hears when an input changes, not how it stands."
     } else {
-        "The host library does not answer: what another program shows, nobody tells."
+        "The host library does not answer: what another program shows is not known."
     };
     ui.label(RichText::new(source).small().weak());
 }

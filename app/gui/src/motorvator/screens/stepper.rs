@@ -143,7 +143,7 @@ fn search_ui(ui: &mut Ui, stepper: &mut Stepper, half: Half, armed: bool) {
                 stepper.judge(true);
             }
         }
-        let end = if search.is_trying() { "Give up" } else { "Close" };
+        let end = if search.is_trying() { "Cancel" } else { "Close" };
         if button_ui(ui, end, "End the search", true) {
             let has_tried = search.is_trying() && armed;
             stepper.give_up();

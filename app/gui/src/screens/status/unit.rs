@@ -76,7 +76,7 @@ pub fn unit_ui(ui: &mut Ui, connection: &Connection, commands: &mut Commands) {
     }
     // Also where it is held for complete, which may be as wrong.
     let is_armed = matches!(connection.link.arming, Arming::Armed { .. });
-    let button = ui.add_enabled(!is_armed, Button::new("Learn Anew"));
+    let button = ui.add_enabled(!is_armed, Button::new("Learn Again"));
     let button = button.on_hover_text(
         "Forgets which commands this firmware has and lacks, here and on this computer, and asks for them again.",
     );

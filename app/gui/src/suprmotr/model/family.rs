@@ -54,6 +54,10 @@ impl Family for SuprMotr {
         Some(Box::<SuprMotrConnection>::default())
     }
 
+    fn simulated_axis(&self) -> &'static str {
+        "One motor with an encoder on a slide, with limit and reference switches"
+    }
+
     fn screens(&self, _identity: Option<&Identity>, _known: Known<'_>) -> Vec<Screen> {
         vec![
             Screen::DeviceStatus,
@@ -149,7 +153,7 @@ impl Family for SuprMotr {
     }
 
     fn scan_cost(&self) -> &'static str {
-        "at three rates where nobody answers, "
+        "at three rates where no unit answers, "
     }
 
     fn to_send(&self, scope: ArmScope, sliders: Sliders) -> Option<Drive> {
@@ -232,16 +236,16 @@ impl Family for SuprMotr {
 static WORDS: SettingsWords = SettingsWords {
     title: "Settings",
     many: "settings",
-    save: "Store (UD)…",
-    save_now: "Store",
-    save_text: "Stores all settings that the unit works with now (UD), then reads them. EEPROM itself is read at a restart alone.",
+    save: "Save to EEPROM…",
+    save_now: "Save",
+    save_text: "Saves all settings that the unit works with now (UD), then reads them. EEPROM itself is read at a restart alone.",
     save_warning: None,
     defaults: "Factory…",
     defaults_now: "Write factory values",
-    defaults_text: "Writes the factory values of the manual into RAM, one by one; the address stays. They last only once they are stored.",
+    defaults_text: "Writes the factory values of the manual into RAM, one by one; the address stays. They last only once they are saved.",
     defaults_warning: Some("The gains change under a motor that its loop holds: it may move a little."),
     reload_text: "Load from EEPROM restarts the unit (RT), then reads its settings. Its position is 0 afterwards, and what it works with \
-                  now and was not stored is lost. It is refused where a macro 0 would run.",
+                  now and was not saved is lost. It is refused where a macro 0 would run.",
 };
 
 /// The bits of the status that set the indicators, in the order of [`INDICATORS`]: what ends a move comes first.

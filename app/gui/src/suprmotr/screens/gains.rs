@@ -40,7 +40,7 @@ pub fn gains_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         let can = is_free && !edits.is_empty();
         let response = ui.add_enabled(can, Button::new("Apply to RAM"));
         response.widget_info(|| WidgetInfo::labeled(Role::Button, can, "Apply gains to RAM"));
-        let hint = "Writes the changes and reads them back. A motor that is held may move a little. Store (UD) in the settings keeps them";
+        let hint = "Writes the changes and reads them back. A motor that is held may move a little. Save to EEPROM in the settings keeps them";
         if response.on_hover_text(hint).on_disabled_hover_text(hint).clicked() {
             commands.push(Command::Own(Rc::new(WriteGains(edits.clone()))));
         }

@@ -109,7 +109,7 @@ fn simulated_ui(ui: &mut Ui, board: &mut Board, is_right: bool) {
     }
     let end = (
         "End the simulated steps",
-        "The next step begins the macro anew, on a board as it comes from the factory",
+        "The next step begins the macro again, on a board as it comes from the factory",
     );
     if is_stepping && button_ui(ui, "End", end, true) {
         board.end_steps();

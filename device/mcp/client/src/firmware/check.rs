@@ -14,7 +14,7 @@ pub enum Unsuitable {
     Image(#[from] ImageError),
     /// The unit's model is not known.
     #[error(
-        "the controller calls itself \"{version}\", which is no known model, so nobody knows what it takes"
+        "the controller calls itself \"{version}\", which is no known model, so what it takes is not known"
     )]
     UnknownModel {
         /// Its version text.

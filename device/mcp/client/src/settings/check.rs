@@ -28,7 +28,7 @@ pub fn conflicts(table: &SettingsTable, get: Lookup<'_>) -> Vec<Conflict> {
     if roboclaw::is_of(table) { roboclaw::conflicts(table, get) } else { pins::conflicts(table, get) }
 }
 
-/// What `changes` lets happen by itself: an input that commands a motor, a script that starts at power up.
+/// What `changes` lets happen by itself: an input that commands a motor, a script that starts at power-up.
 pub(super) fn dangers(table: &SettingsTable, after: &SettingsImage, changes: &SettingsImage) -> Vec<Message> {
     let mut dangers = Vec::new();
     for pin in 1..=table.subject().pins {

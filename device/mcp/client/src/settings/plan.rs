@@ -50,7 +50,7 @@ pub fn stage(planned: &Planned<'_>) -> Stage {
     match planned.command {
         number::SET_ADDRESS_MIXED if changed.iter().any(|row| row.key == "unit.address") => Stage::Address,
         number::SET_STREAM if planned.context.options.own_stream.is_some_and(own) => Stage::OwnPort,
-        // An address moves at once, the rest with the next power up.
+        // An address moves at once, the rest with the next power-up.
         number::SET_CONFIG if changed.iter().any(|row| row.key == CONFIG_ADDRESS) => Stage::Address,
         number::SET_CONFIG => Stage::OwnPort,
         number::SET_MAIN_VOLTAGES

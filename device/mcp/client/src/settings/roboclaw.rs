@@ -38,7 +38,7 @@ const MOTORS: [(usize, &str); 2] = [(1, "s4"), (2, "s5")];
 fn own_limits_overruled(get: Lookup<'_>) -> Option<Conflict> {
     let cells = choice(get, BATTERY).filter(|mode| *mode != "user")?;
     let how = match cells {
-        "auto" => "detected at power up".to_owned(),
+        "auto" => "detected at power-up".to_owned(),
         cells => format!("set to {}", cells.replace('_', " ")),
     };
     Some(Conflict {
@@ -97,7 +97,7 @@ pub(super) fn dangers(after: &SettingsImage, changes: &SettingsImage) -> Vec<Mes
     dangers.into_iter().map(Message::from).collect()
 }
 
-/// From the next power up S1 and S2 drive, and bits of the configuration word mean other things.
+/// From the next power-up S1 and S2 drive, and bits of the configuration word mean other things.
 fn inputs_command(get: Lookup<'_>, changes: &SettingsImage) -> Option<RoboClawMessage> {
     let mode = changes.get(MODE)?.choice()?;
     let signal = match mode {
@@ -129,7 +129,7 @@ fn runs_on(get: Lookup<'_>, changes: &SettingsImage) -> Option<RoboClawMessage> 
     (is_new && goes_on).then_some(RoboClawMessage::RunsOn)
 }
 
-/// A motor that looks for its home switch at power up.
+/// A motor that looks for its home switch at power-up.
 fn homes(get: Lookup<'_>, changes: &SettingsImage, (motor, pin): (usize, &str)) -> Option<RoboClawMessage> {
     let pin = format!("roboclaw.pin.{pin}");
     let keys = [pin.clone(), format!("motor{motor}.home.duty"), format!("motor{motor}.home.timeout_seconds")];

@@ -97,7 +97,7 @@ fn crc_of(request: &[u8], reply: &[u8]) -> Option<&'static str> {
     let fits = |before: &[u8]| crc16_xmodem(&[before, data].concat()) == u16::from_be_bytes(*crc);
     match () {
         () if fits(request) => Some("goes on from the request"),
-        () if fits(&[]) => Some("starts anew"),
+        () if fits(&[]) => Some("restarts"),
         () => None,
     }
 }

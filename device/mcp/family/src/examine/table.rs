@@ -61,7 +61,7 @@ pub static STEPS: &[Step] = &[
         title: "read by commands whose layout is a guess",
         need: Need::Guess,
         does: "Commands 88, 89, 180 and 191 are sent, one at a time. Libraries contradict each other about them; they are taken for reads, but \
-               what this firmware makes of them nobody knows.",
+               what this firmware makes of them is not known.",
         touches: &[],
         questions: &[
             q(
@@ -76,7 +76,7 @@ pub static STEPS: &[Step] = &[
             ),
             q(
                 "can_dictionary",
-                "Does command 191 take a CRC, and does the CRC of its reply start anew?",
+                "Does command 191 take a CRC, and does the CRC of its reply begin again?",
                 "The device type of the unit's own node, without a CRC and with one.",
             ),
         ],
@@ -190,7 +190,7 @@ const PINS: &str = "It takes known signals at the inputs.";
 const MACHINE: &str = "It takes a machine under load, or one that is disturbed on purpose.";
 const BUS: &str = "It takes other nodes on a CAN bus that one may disturb.";
 const SCRIPT: &str = "It takes a script that a real unit runs, and their byte code is not public.";
-const LOOKING: &str = "Nothing on the wire tells it: somebody has to look or to measure.";
+const LOOKING: &str = "Nothing on the wire tells it: it has to be looked at or measured.";
 const FIRMWARE_UPDATE: &str = "The loader erases the firmware.";
 const LONG_MOVES: &str =
     "It takes moves over a longer distance than an examination makes; a tuning run shows what comes of it.";

@@ -1,7 +1,7 @@
 //! The firmware loader that command 255 enters, and the flash memory it fills. The codec is `brushwork_mcp_wire::loader`.
 //!
 //! A unit whose power fails while it erases is dead for good (MCP manual 1.3.2). One whose transfer broke later has no firmware
-//! and waits for it in the loader, after each power up again (MCP manual 1.6.3, "waiting for new firmware").
+//! and waits for it in the loader, after each power-up again (MCP manual 1.6.3, "waiting for new firmware").
 //!
 //! Assumed: that the loader erases everything when it is greeted, the times of erase and page, that it waits for the rest of a
 //! page for ever, that it takes the size that is published first for its family, and that it checks nothing of the image.

@@ -1,13 +1,13 @@
 //! The three LEDs at work (MCP manual 1.6); what they say is in [`brushwork_mcp_wire::packet_serial::led`].
 //!
-//! Assumed: how long all of them light after power up, and how long STAT1 goes dark with a byte.
+//! Assumed: how long all of them light after power-up, and how long STAT1 goes dark with a byte.
 
 use brushwork_mcp_wire::packet_serial::led::{BOOT_CODE, Light, blink_code};
 use brushwork_mcp_wire::packet_serial::status::{Condition, Conditions};
 use brushwork_plant::world::Leds;
 use std::time::Duration;
 
-/// How long all three LEDs light after power up.
+/// How long all three LEDs light after power-up.
 pub const POWER_UP_BLINK: Duration = Duration::from_millis(500);
 /// STAT1 goes dark for this long when a byte arrives.
 const DATA_BLINK: Duration = Duration::from_millis(30);

@@ -57,7 +57,7 @@ pub static STEPS: &[Step] = &[
         key: WRITING,
         title: "write to a register that only the unit changes",
         need: Need::Write,
-        does: "INDEXPOS, which the next index pulse sets anew, is written in RAM with a number one higher, and put back if it takes it.",
+        does: "INDEXPOS, which the next index pulse sets again, is written in RAM with a number one higher, and put back if it takes it.",
         touches: &[],
         questions: &[q(
             "read_only",
@@ -79,7 +79,7 @@ pub static STEPS: &[Step] = &[
     },
 ];
 
-const POWER: &str = "It takes a power cycle, and somebody who looks.";
+const POWER: &str = "It takes a power cycle, and a look at the unit.";
 const LOAD: &str = "It takes a machine under load.";
 const WHOLE: &str = "It would overwrite all settings of the unit.";
 const RECEIVER: &str = "It takes a receiver or a known signal at the inputs.";

@@ -179,7 +179,7 @@ pub(crate) static ROWS: &[Template] = settings! {
         .fixed(Unit::Percent, DEFAULT_SPEED, 1, Limits::Steps(0, 0x7FFF))
         .assumed_default(DefaultValue::Number(0.0));
         [Form::field(READ_HOMING, SET_HOMING, &["duty_m1", "duty_m2"]).only(GEN2, GEN3).writing(&["duty"])]
-        "How hard the motor looks for its home switch at power up: a share of the top speed where it has a \
+        "How hard the motor looks for its home switch at power-up: a share of the top speed where it has a \
          velocity or position loop, else a duty. RoboClaw manual 2018, command 105.";
     motor("motor{n}.home.timeout_seconds", "Homing time-out", Group::HOMING)
         .fixed(Unit::Seconds, Coding::PerUnit(steps_of(scale::HOMING_TIMEOUT_S)), 2, U32_STEPS)

@@ -31,7 +31,7 @@ pub(crate) static ROWS: &[Template] = settings! {
         [signal(&["min_action"]).only(GEN1, GEN1).with_kind(Kind::Choice(SIGNAL_ACTIONS_GENERATION_1))
             .simulated_only(ACTION_NUMBERS),
          signal(&["min_action"]).only(GEN2, GEN4)]
-        "What happens when the input is at or below its minimum: a limit switch, a homing switch, an \
+        "What happens when the input is at or below its minimum: a limit switch, a home switch, an \
          E-Stop. MCP manual 1.9.8, command 143.";
     pin("pin.{n}.max_action", "Maximum action").choice(SIGNAL_ACTIONS).default(DefaultValue::Key("none"));
         [signal(&["max_action"]).only(GEN1, GEN1).with_kind(Kind::Choice(SIGNAL_ACTIONS_GENERATION_1))
@@ -102,7 +102,7 @@ pub(crate) static ROWS: &[Template] = settings! {
         .default(DefaultValue::Bool(false));
         [Form::hidden("No packet serial command for inverting an output is public: command 137 carries the \
          action only.")]
-        "Switches the output on at power up and off while its action is active. MCP manual 1.9.9.";
+        "Switches the output on at power-up and off while its action is active. MCP manual 1.9.9.";
 };
 
 const ACTION_NUMBERS: &str = "The numbers of the actions in generation 1 are a guess: the field is one \

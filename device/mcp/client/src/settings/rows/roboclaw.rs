@@ -24,18 +24,18 @@ pub(crate) static ROWS: &[Template] = settings! {
         .assumed_default(DefaultValue::Key("packet_serial"));
         [config(0, 2)]
         "What commands the motors: pulses or voltages on S1 and S2, or the serial line on S1 and S2. It counts \
-         from the next power up. Anything but packet serial ends a connection by S1 and S2; USB goes on. Command \
+         from the next power-up. Anything but packet serial ends a connection by S1 and S2; USB goes on. Command \
          98, bits 0 and 1.";
     roboclaw("roboclaw.config.battery", "Battery cut-off", CONFIGURATION).choice(BATTERY_MODES)
         .assumed_default(DefaultValue::Key("user"));
         [config(2, 3)]
         "What sets the least and greatest main battery voltage: the limits under voltage limits, or a number \
-         of lithium polymer cells, given or detected at power up. Detection needs a charged battery. Command 98, \
+         of lithium polymer cells, given or detected at power-up. Detection needs a charged battery. Command 98, \
          bits 2 to 4.";
     roboclaw("roboclaw.config.baud", "Baud rate or R/C options", CONFIGURATION).choice(BAUD_OR_OPTIONS)
         .assumed_default(DefaultValue::Key("38400"));
         [config(5, 3)]
-        "In the serial modes the rate of S1 and S2, from the next power up. In R/C and analog mode three \
+        "In the serial modes the rate of S1 and S2, from the next power-up. In R/C and analog mode three \
          options: mixing (S1 drives, S2 turns), exponential (less sensitive in the middle) and MCU (keeps to the \
          last pulse, calibrates nothing). Command 98, bits 5 to 7.";
     roboclaw("roboclaw.config.address", "Address or R/C switches", CONFIGURATION).choice(ADDRESS_OR_SWITCHES)

@@ -69,7 +69,7 @@ pub(crate) static ROWS: &[Template] = settings! {
         .fixed(Unit::Volts, VOLTS, 1, Limits::Steps(0, 255)).assumed_default(DefaultValue::Number(0.0));
         [Form::field(&[number::READ_MAIN_VOLTAGES], &[number::SET_MAIN_VOLTAGES], &["auto_offset"])
             .only(GEN4, GEN4)]
-        "Sets the maximum by itself at power up, this much above the voltage found then; 0 uses the fixed \
+        "Sets the maximum by itself at power-up, this much above the voltage found then; 0 uses the fixed \
          maximum. Public clients, 2025, command 57.";
     setting("limits.logic_battery.min_volts", "Logic battery minimum", Group::VOLTAGE_LIMITS)
         .fixed(Unit::Volts, VOLTS, 1, Limits::LogicVolts).assumed_default(DefaultValue::Number(8.0));
@@ -101,6 +101,6 @@ pub(crate) static ROWS: &[Template] = settings! {
     mcp("script.autorun_delay", "Script autorun delay", Group::SCRIPTING)
         .int(Unit::Milliseconds, Limits::Steps(0, 0xFFFF_FFFF)).default(DefaultValue::Int(0));
         [Form::field(&[number::READ_SCRIPT_AUTORUN], &[number::SET_SCRIPT_AUTORUN], &["delay"])]
-        "Starts the stored script this long after power up. Below 100 ms no script starts by itself. A \
+        "Starts the stored script this long after power-up. Below 100 ms no script starts by itself. A \
          script can move motors. MCP manual 1.2.10, command 246.";
 };

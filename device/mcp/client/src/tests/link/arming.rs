@@ -84,7 +84,7 @@ fn an_unknown_port_is_armed_only_if_every_one_it_could_be_has_a_time_out() {
     assert_eq!(
         refusal(bus, None),
         [
-            "Could not arm the motors on 0x80 at /dev/test: nobody said which connector of the controller this port is, and \
+            "Could not arm the motors on 0x80 at /dev/test: it was not said which connector of the controller this port is, and \
           RS232 UART0 has no time-out. Choose the connector, or give it with the port: \",stream=usb\"."
         ]
     );

@@ -307,7 +307,7 @@ fn limits_are_written_first_and_the_way_to_the_controller_last() {
              that rate.",
             "DIN1/AN1/P1/TX3 commands both motors as soon as this is written, since pulse inputs are at \
              priority level 1: the motor can start.",
-            "A stored script starts 500 ms after each power up and can move the motors.",
+            "A stored script starts 500 ms after each power-up and can move the motors.",
             "DIN1/AN1/P1/TX3 is set to pulse, but TTL UART3 is in use and holds the pin. Disable TTL UART3, or \
              set the pin to None.",
         ]

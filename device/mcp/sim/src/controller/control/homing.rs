@@ -1,4 +1,4 @@
-//! Homing at power up: motor 1 first, then motor 2; off the switch if the motor stands on it, then backward until it meets it
+//! Homing at power-up: motor 1 first, then motor 2; off the switch if the motor stands on it, then backward until it meets it
 //! (the vendor's support forum, 2019; RoboClaw manual 2018, commands 105 and 106).
 
 use super::super::firmware::Firmware;

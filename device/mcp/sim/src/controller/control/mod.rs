@@ -1,4 +1,4 @@
-//! What a RoboClaw does by its control pins and its configuration word: emergency stop, limit and home switches, homing at power up,
+//! What a RoboClaw does by its control pins and its configuration word: emergency stop, limit and home switches, homing at power-up,
 //! R/C and analog inputs, simple serial, control outputs, battery cut-off (RoboClaw manual 2018).
 //!
 //! Assumed, all in this folder, since no public source says it:
@@ -12,7 +12,7 @@
 //!   1500 us with MCU; pulses that stop for 250 ms are lost; the flip switch turns both motors round; an open analog input is a stop;
 //!   the range and the limits of generation 4 are in us, in mV, and in 1/32767 of full output, and zeros leave the unit's own;
 //! - exponential is a square; behind a deadband the slope begins at its edge; a motor goes on by its input after an emergency stop;
-//! - a cell is cut off at 3.0 V and full at 4.2 V; with automatic offset the maximum is so much above the voltage at power up;
+//! - a cell is cut off at 3.0 V and full at 4.2 V; with automatic offset the maximum is so much above the voltage at power-up;
 //! - slave mode, relay mode, swapped buttons, encoder toggle and RS-485 direction have no effect here.
 
 mod homing;

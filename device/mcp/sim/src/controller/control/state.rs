@@ -23,7 +23,7 @@ pub(crate) struct Control {
     pub(super) homing: Homing,
     /// S1 and S2.
     pub(super) inputs: [Input; 2],
-    /// The main battery at power up.
+    /// The main battery at power-up.
     start_volts: f64,
 }
 
@@ -50,7 +50,7 @@ pub(super) enum Homing {
 }
 
 impl Homing {
-    /// As at power up.
+    /// As at power-up.
     pub(super) const START: Self = Self::Next(Motor::M1);
 }
 

@@ -184,7 +184,7 @@ fn a_locked_shaft_lights_the_error_led_whichever_loop_drives() {
     }
 }
 
-/// MCP manual 1.4.1: "Auto detect will sample the main battery voltage on power up or after a reset ... the Stat2 LED will blink to
+/// MCP manual 1.4.1: "Auto detect will sample the main battery voltage on power-up or after a reset ... the Stat2 LED will blink to
 /// indicate the battery cell count that was detected. Each blink indicates the number of LIPO cells detected."
 #[test]
 fn stat2_blinks_once_for_each_cell_that_was_detected_at_power_up_and_the_battery_is_protected() {
@@ -193,7 +193,7 @@ fn stat2_blinks_once_for_each_cell_that_was_detected_at_power_up_and_the_battery
         bench.apply(&WorldAction::SetBatteryVolts { volts });
         bench.apply(&WorldAction::SetBatteryDetection { on: true });
         bench.wait(Duration::from_secs(2));
-        assert!(!leds(&bench).stat2, "it counts at power up, not before");
+        assert!(!leds(&bench).stat2, "it counts at power-up, not before");
         bench.apply(&WorldAction::Power { on: false });
         bench.wait(A_MOMENT);
         bench.apply(&WorldAction::Power { on: true });
@@ -204,7 +204,7 @@ fn stat2_blinks_once_for_each_cell_that_was_detected_at_power_up_and_the_battery
                 leds(&bench).stat2
             })
             .collect();
-        // The blink of all three at power up runs into the first of them.
+        // The blink of all three at power-up runs into the first of them.
         let blinks = looks.windows(2).filter(|pair| pair[0] && !pair[1]).count();
         assert_eq!(blinks, cells, "{volts} V");
         // The lowest that so many cells may have is 3 V each.

@@ -28,7 +28,7 @@ pub(super) const ROWS: &[Command] = rows! {
         note "The vendor's C++ library of 2025 expects no acknowledgement before the result.";
     CLIENTS READ_CAN_DICTIONARY "read CANopen dictionary"
         forms![read_at(G4, G4, ENTRY, READ_ENTRY).assumed(CONTRADICT)], simulated DICTIONARY, client NEVER,
-        note "The vendor's C++ library of 2025 appends a CRC and starts the reply's CRC anew.";
+        note "The vendor's C++ library of 2025 appends a CRC and begins the reply's CRC again.";
 };
 
 const NO_BUS: Simulated =

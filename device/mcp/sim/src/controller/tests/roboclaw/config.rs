@@ -126,7 +126,7 @@ fn a_number_of_cells_sets_the_battery_limits() {
         (6, 17.9, true, false),
         (6, 25.3, false, true),
         (7, 20.9, true, false),
-        // Detected at power up: six cells at 24 V.
+        // Detected at power-up: six cells at 24 V.
         (1, 24.0, false, false),
         (1, 17.9, true, false),
         (1, 25.3, false, true),

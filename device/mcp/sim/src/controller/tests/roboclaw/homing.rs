@@ -1,4 +1,4 @@
-//! Homing at power up (commands 105 to 107).
+//! Homing at power-up (commands 105 to 107).
 
 use super::*;
 use brushwork_mcp_wire::packet_serial::Generation::{Gen3, Gen4};
@@ -6,7 +6,7 @@ use brushwork_plant::world::SwitchKind;
 
 const HOME_AUTO: i64 = 0xE2;
 
-/// A unit that homes motor 1 at the next power up: switch at -1 radian, time-out in seconds.
+/// A unit that homes motor 1 at the next power-up: switch at -1 radian, time-out in seconds.
 fn homing(generation: Generation, duty_raw: i64, timeout_s: i64) -> Bench {
     let mut bench = claw(generation);
     bench.apply(&WorldAction::WireSwitch {
