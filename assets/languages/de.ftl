@@ -100,7 +100,7 @@ action =
     .zero-encoder-m1 = Encoder M1 nullen
     .zero-encoder-m2 = Encoder M2 nullen
     .reset-emergency-stop-e-stop = Not-Halt zurücksetzen
-    .learn-its-commands-anew = Befehle neu ermitteln
+    .learn-its-commands-again = Befehle neu ermitteln
     .raw-settings = Rohe Einstellungen…
     .run-or-continue = Starten oder fortsetzen
     .pause-script = Skript unterbrechen
@@ -311,6 +311,42 @@ bar =
     .stop-all = Alles anhalten
     .the-file = die Datei
     .profile-backup-recording-tuning-report-script-or-firmware-image = Profil, Sicherung, Aufzeichnung, Einstellbericht, Skript oder Firmware-Abbild
+    .attached-devices = Angeschlossene Geräte
+    .in-this-program = in diesem Programm
+    .unplugged = ausgesteckt
+    .named-below = unten genannt
+    .no-serial-port-found-plug-in-a-controller-or-type-a-path = Kein serieller Anschluss gefunden. Stecken Sie einen Regler ein oder geben Sie unten einen Pfad ein.
+    .other-device = Anderes Gerät
+    .path-tcp-sim = Pfad, tcp:, sim:
+    .simulated-model = Simuliertes Modell
+    .which-controller-is-simulated-in-this-program = Welcher Regler in diesem Programm simuliert wird
+    .controller-family = Familie des Reglers
+    .find-out-asks-for-mcp-and-roboclaw-first-then-for-motion-minds = „Find out“ fragt zuerst nach MCP und RoboClaw, dann nach Motion Minds, mit einer Baudrate. Die Familie zu wählen geht schneller und stellt ihre übliche Baudrate ein.
+    .scan-all = Alle suchen
+    .several = Mehrere
+    .factory = Werk
+    .address = Adresse
+    .baud-rate = Baudrate
+    .the-rate-the-controller-s-serial-port-is-set-to = Die Baudrate, auf die der Anschluss des Reglers gestellt ist
+    .recent = Zuletzt
+    .forget-all = Alle vergessen
+    .earlier-connections = Frühere Verbindungen
+    .connect = Verbinden
+    .cancel = Abbrechen
+    .disconnect = Trennen
+    .disconnecting = Wird getrennt
+    .units-on-this-link = Geräte an dieser Verbindung
+    .dismiss = Schließen
+    .nothing-to-report = Nichts zu melden.
+    .no-controller-is-connected-choose-one-at-the-left-and-press-connect = Kein Regler ist verbunden. Wählen Sie links einen und drücken Sie „Verbinden“; der simulierte ist immer da.
+    .the-debugger-holds-the-script-where-it-is-its-last-motor-commands = Die Fehlersuche hält das Skript an. Seine letzten Befehle an die Motoren gelten weiter: „Alles anhalten“ hält sie an und beendet es.
+    .a-script-commands-the-motors-by-itself-stop-all-ends-it-so = Ein Skript steuert die Motoren selbst. „Alles anhalten“ beendet es, ebenso das Verlassen des MCL-Editors, von dem aus es gestartet wurde.
+    .dev-ttyusb0-dev-pts-4-com3-tcp-127-0-0-1-5000 = /dev/ttyUSB0, /dev/pts/4, COM3, tcp:127.0.0.1:5000, sim:mcp266,generation=4. Eingabe verbindet.
+
+gravity =
+    .note = Hinweis
+    .warning = Warnung
+    .error = Fehler
 
 start =
     .start = Start
@@ -383,3 +419,54 @@ ButtonMessage =
 
 PanelMessage =
     .Toolbar = Werkzeugleiste: { $action }
+
+DeviceRowMessage =
+    .Row = { $title }: { $detail }, { $state }
+    .InFront = { $row }, im Vordergrund
+    .Hint =
+        { $title }
+        { $detail }
+        { $state }
+    .DisconnectFrom = Von { $title } trennen
+    .Forget = { $title } vergessen
+
+DeviceStateMessage =
+    .Available = verfügbar
+    .Closed = geschlossen
+    .Gone = nicht mehr da
+    .LinkLost = Verbindung verloren
+    .NotOpened = ließ sich nicht öffnen
+    .Connecting = wird verbunden
+    .Disconnecting = wird getrennt
+    .Looking = sucht Regler
+    .Connected = verbunden
+    .WithError = verbunden, Fehler
+    .WithWarning = verbunden, Warnung
+    .Armed = verbunden, scharf
+
+LinkStatusMessage =
+    .Connected = Verbunden mit { $unit } an { $port }, { $place }, Firmware { $firmware } ({ $generation }).
+    .ConnectedBare = Verbunden mit { $unit } an { $port }, { $place } ({ $generation }).
+    .ConnectedOf = Verbunden mit { $unit } an { $port }, { $place }, { $generation }.
+    .Lacks = Der Firmware von { $unit } fehlt: { $commands }.
+    .LostArmed = { $what } Die Seite war scharf: der Regler hält seine Motoren nach { $seconds } s Stille selbst an.
+    .LostArmedForever = { $what } Die Seite war scharf: vergewissern Sie sich, dass die Motoren stehen.
+    .LostWaiting = { $what } { $waiting }
+    .Stopped = Angehalten. Der Haltebefehl war nach { $milliseconds } ms auf der Leitung; Tastgrad 0 ist bestätigt.
+    .StoppedFromOutside = { $reason }. Der Haltebefehl war nach { $milliseconds } ms auf der Leitung; Tastgrad 0 ist bestätigt.
+
+WindowStatusMessage =
+    .Disconnected = Getrennt.
+    .GaveUp = Das Verbinden wurde abgebrochen.
+    .TunedNotApplied = { $motor } ist eingestellt. Die alten Werte gelten, bis Sie die vorgeschlagenen übernehmen.
+    .AsPredicted = { $motor } verhält sich mit diesen Werten wie vorhergesagt.
+
+OutcomeMessage =
+    .Applied = Übernommen und zurückgelesen: { $settings } im RAM des Reglers. Bis sie im EEPROM gespeichert sind, gelten sie nur bis zum Ausschalten.
+    .Written = { $settings } geschrieben und zurückgelesen. Erst das Speichern im EEPROM erhält sie über das Ausschalten hinaus.
+
+PathMessage =
+    .BackupMade = Die Einstellungen sind auf diesem Rechner gesichert.
+
+SaveMessage =
+    .Verified = Die Einstellungen sind gespeichert; sie wurden aus dem EEPROM zurückgelesen.

@@ -6,7 +6,7 @@
 use std::cell::{Cell, LazyCell};
 use std::fmt::Display;
 
-use brushwork_values::Words;
+use brushwork_values::{Message, Words};
 use fluent_bundle::{FluentArgs, FluentBundle, FluentResource, FluentValue};
 use serde::{Deserialize, Serialize};
 
@@ -45,6 +45,11 @@ impl Language {
 /// A message in the language of the window.
 pub fn said(words: &impl Words) -> String {
     translated(&words.key(), || words.values()).unwrap_or_else(|| words.to_string())
+}
+
+/// What the message line shows, in the language of the window.
+pub fn said_message(message: &Message) -> String {
+    translated(&message.key(), || message.values()).unwrap_or_else(|| message.to_string())
 }
 
 /// A title or label in the language of the window: its key is its theme and its English words.
@@ -86,10 +91,19 @@ fn translated<'a>(
     })
 }
 
-/// A count as a number, by which a plural is chosen; all else as it reads.
+/// More digits behind the point than a sentence of ours ever has: a measured value as it was measured.
+const MEASURED_DECIMALS: usize = 4;
+
+/// A count as a number, by which a plural is chosen; a measured value with one digit behind the comma; all else as it reads.
 fn value_of(text: String) -> FluentValue<'static> {
-    match text.parse::<u32>() {
-        Ok(count) if count.to_string() == text => count.into(),
+    if let Ok(count) = text.parse::<u32>()
+        && count.to_string() == text
+    {
+        return count.into();
+    }
+    let decimals = text.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    match text.parse::<f64>() {
+        Ok(figure) if decimals >= MEASURED_DECIMALS => format!("{figure:.1}").replace('.', ",").into(),
         _ => text.into(),
     }
 }

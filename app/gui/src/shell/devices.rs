@@ -10,11 +10,11 @@ use egui::containers::menu::MenuButton;
 
 use crate::command::{Command, Commands};
 use crate::family::{self, Family};
-use crate::language::said;
+use crate::language::{said, word};
 use crate::model::devices::{BAUD_RATES, Choice, Devices, described};
 use crate::model::{Arming, Connection, ConnectionId, IndicatorState, Model, Phase, Simulated, place_of};
 use crate::screens::face;
-use crate::shell::messages::ShellMessage;
+use crate::shell::messages::{DeviceRowMessage, DeviceStateMessage as Stands, ShellMessage};
 use crate::theme::Palette;
 use crate::widgets::{choice_ui, heading_ui, text_field_ui};
 
@@ -22,7 +22,7 @@ const ROW_HEIGHT: f32 = 54.0;
 const RECENT_WIDTH: f32 = 70.0;
 
 pub fn devices_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
-    heading_ui(ui, "Attached devices");
+    heading_ui(ui, &word("bar", "Attached devices"));
     ui.spacing_mut().item_spacing.y = 4.0;
     for row in rows(model) {
         row_ui(ui, &row, model, commands);
@@ -66,13 +66,13 @@ fn rows(model: &Model) -> Vec<Row> {
         devices.simulated_target(),
         said(&ShellMessage::Simulated { name: name_of(&simulated.model).to_owned() }),
     );
-    let mut rows = vec![row(model, Choice::Simulated, &place, &title, "in this program")];
+    let mut rows = vec![row(model, Choice::Simulated, &place, &title, &word("bar", "in this program"))];
     for port in &devices.ports {
         rows.push(row(model, Choice::Port(port.name.clone()), &port.name, &port.name, &described(port)));
     }
     if let (Choice::Port(name), true) = (&devices.choice, devices.choice_is_gone()) {
-        let mut gone = row(model, devices.choice.clone(), name, name, "unplugged");
-        gone.state = State::GONE;
+        let mut gone = row(model, devices.choice.clone(), name, name, &word("bar", "unplugged"));
+        gone.state = State(Stands::Gone, IndicatorState::Warning);
         rows.push(gone);
     }
     let mut connections: Vec<&Connection> =
@@ -81,12 +81,13 @@ fn rows(model: &Model) -> Vec<Row> {
     for connection in connections {
         let target = connection.target.as_deref().unwrap_or_default();
         if !rows.iter().any(|row| row.connection == Some(connection.id())) {
+            let detail = word("bar", "named below");
             let mut other =
-                row(model, Choice::Connection(connection.id()), &place_of(target), target, "named below");
+                row(model, Choice::Connection(connection.id()), &place_of(target), target, &detail);
             other.can_be_forgotten = !other.is_open;
             // Nobody looks whether it is there.
-            if other.state == State::AVAILABLE {
-                other.state = State::CLOSED;
+            if other.state.0 == Stands::Available {
+                other.state.0 = Stands::Closed;
             }
             rows.push(other);
         }
@@ -101,7 +102,7 @@ fn row(model: &Model, choice: Choice, place: &str, title: &str, detail: &str) ->
         choice,
         title: title.to_owned(),
         detail: identity.map_or_else(|| detail.to_owned(), answered),
-        state: connection.map_or(State::AVAILABLE, State::of),
+        state: connection.map_or_else(State::available, State::of),
         simulated: place.starts_with("sim:"),
         connection: connection.map(Connection::id),
         is_open: connection.is_some_and(|connection| connection.phase != Phase::Closed),
@@ -119,25 +120,22 @@ fn answered(identity: &Identity) -> String {
 }
 
 /// What is so with a device: a word, and an indicator that says the same by colour and shape.
-#[derive(Clone, Copy, PartialEq, Eq)]
-struct State(&'static str, IndicatorState);
+struct State(Stands, IndicatorState);
 
 impl State {
-    const AVAILABLE: Self = Self("available", IndicatorState::Unknown);
-    const CLOSED: Self = Self("closed", IndicatorState::Unknown);
-    const GONE: Self = Self("gone", IndicatorState::Warning);
+    const fn available() -> Self {
+        Self(Stands::Available, IndicatorState::Unknown)
+    }
 
     fn of(connection: &Connection) -> Self {
         match &connection.phase {
-            Phase::Closed if connection.lost.is_some() => Self("link lost", IndicatorState::Error),
-            Phase::Closed if connection.could_not_open => {
-                Self("could not be opened", IndicatorState::Warning)
-            }
-            Phase::Closed => Self::AVAILABLE,
-            Phase::Opening { .. } => Self("connecting", IndicatorState::Active),
-            Phase::Closing { .. } => Self("disconnecting", IndicatorState::Active),
+            Phase::Closed if connection.lost.is_some() => Self(Stands::LinkLost, IndicatorState::Error),
+            Phase::Closed if connection.could_not_open => Self(Stands::NotOpened, IndicatorState::Warning),
+            Phase::Closed => Self::available(),
+            Phase::Opening { .. } => Self(Stands::Connecting, IndicatorState::Active),
+            Phase::Closing { .. } => Self(Stands::Disconnecting, IndicatorState::Active),
             Phase::Open { .. } if connection.link.identity().is_none() => {
-                Self("looking for controllers", IndicatorState::Active)
+                Self(Stands::Looking, IndicatorState::Active)
             }
             Phase::Open { .. } => Self::of_unit(connection),
         }
@@ -145,10 +143,10 @@ impl State {
 
     fn of_unit(connection: &Connection) -> Self {
         match (connection.link.indicators.worst(), connection.link.arming) {
-            (IndicatorState::Error, _) => Self("connected, error", IndicatorState::Error),
-            (_, Arming::Armed { .. }) => Self("connected, armed", IndicatorState::Active),
-            (IndicatorState::Warning, _) => Self("connected, warning", IndicatorState::Warning),
-            _ => Self("connected", IndicatorState::Ok),
+            (IndicatorState::Error, _) => Self(Stands::WithError, IndicatorState::Error),
+            (_, Arming::Armed { .. }) => Self(Stands::Armed, IndicatorState::Active),
+            (IndicatorState::Warning, _) => Self(Stands::WithWarning, IndicatorState::Warning),
+            _ => Self(Stands::Connected, IndicatorState::Ok),
         }
     }
 }
@@ -158,8 +156,14 @@ fn row_ui(ui: &mut Ui, row: &Row, model: &mut Model, commands: &mut Commands) {
     let in_front = row.is_open && row.connection == Some(model.front.id());
     let several = model.connections().filter(|connection| connection.phase != Phase::Closed).count() > 1;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT), Sense::click());
-    let front = if in_front && several { ", in front" } else { "" };
-    let spoken = format!("{}: {}, {}{front}", row.title, row.detail, row.state.0);
+    let (title, detail, state) = (row.title.clone(), row.detail.clone(), said(&row.state.0));
+    let with_front = |text: String| match in_front && several {
+        true => said(&DeviceRowMessage::InFront { row: text }),
+        false => text,
+    };
+    let row_text =
+        DeviceRowMessage::Row { title: title.clone(), detail: detail.clone(), state: state.clone() };
+    let spoken = with_front(said(&row_text));
     response.widget_info(|| WidgetInfo::selected(Role::Button, true, chosen, &spoken));
     paint_row(ui, rect, row, (chosen, in_front && several), &response);
     end_ui(ui, rect, row, commands);
@@ -170,18 +174,19 @@ fn row_ui(ui: &mut Ui, row: &Row, model: &mut Model, commands: &mut Commands) {
     if response.double_clicked() && !row.is_open {
         commands.push(Command::Connect);
     }
-    response.on_hover_text(format!("{}\n{}\n{}{front}", row.title, row.detail, row.state.0));
+    response.on_hover_text(with_front(said(&DeviceRowMessage::Hint { title, detail, state })));
 }
 
 /// The small button in the row's corner: ends the link, or takes a closed one off the list.
 fn end_ui(ui: &mut Ui, rect: Rect, row: &Row, commands: &mut Commands) {
     let Some(connection) = row.connection.filter(|_| row.is_open || row.can_be_forgotten) else { return };
-    let (verb, command) = match row.is_open {
-        true => ("Disconnect from", Command::Disconnect(connection)),
-        false => ("Forget", Command::Forget(connection)),
+    let title = row.title.clone();
+    let (name, command) = match row.is_open {
+        true => (DeviceRowMessage::DisconnectFrom { title }, Command::Disconnect(connection)),
+        false => (DeviceRowMessage::Forget { title }, Command::Forget(connection)),
     };
+    let name = said(&name);
     let at = Rect::from_center_size(pos2(rect.right() - 13.0, rect.bottom() - 11.0), vec2(20.0, 16.0));
-    let name = format!("{verb} {}", row.title);
     let response = ui.interact(at, ui.scope_id().with((&row.title, "end")), Sense::click());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
     let palette = Palette::of(ui);
@@ -234,20 +239,21 @@ fn paint_row(ui: &Ui, rect: Rect, row: &Row, (chosen, in_front): (bool, bool), r
         small.clone(),
         palette.weak_text,
     );
-    below.text(pos2(left, rect.bottom() - 5.0), Align2::LEFT_BOTTOM, row.state.0, small, palette.text);
+    below.text(pos2(left, rect.bottom() - 5.0), Align2::LEFT_BOTTOM, said(&row.state.0), small, palette.text);
 }
 
 fn hint_ui(ui: &mut Ui, devices: &Devices) {
     let text = match &devices.listing_failure {
         Some(failure) => failure.to_string(),
-        None => "No serial port found. Plug in a controller, or type a path below.".to_owned(),
+        None => word("bar", "No serial port found. Plug in a controller, or type a path below."),
     };
     ui.label(RichText::new(text).small().weak());
 }
 
 /// The field for a path; true when Enter was pressed in it.
 fn path_ui(ui: &mut Ui, devices: &mut Devices) -> bool {
-    let response = text_field_ui(ui, &mut devices.typed, "Other device", "Path, tcp:, sim:");
+    let response =
+        text_field_ui(ui, &mut devices.typed, &word("bar", "Other device"), &word("bar", "Path, tcp:, sim:"));
     if response.changed() {
         devices.choice = if devices.typed.trim().is_empty() { Choice::Simulated } else { Choice::Typed };
     }
@@ -255,9 +261,10 @@ fn path_ui(ui: &mut Ui, devices: &mut Devices) -> bool {
         devices.choice = Choice::Typed;
     }
     let entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
-    let response = response.on_hover_text(
+    let response = response.on_hover_text(word(
+        "bar",
         "/dev/ttyUSB0, /dev/pts/4, COM3, tcp:127.0.0.1:5000, sim:mcp266,generation=4. Enter connects.",
-    );
+    ));
     let _ = response;
     entered && devices.choice == Choice::Typed
 }
@@ -299,8 +306,8 @@ fn model_ui(ui: &mut Ui, simulated: &mut Simulated) {
     let models = family::simulated_models().map(|(key, _)| key);
     let (list, mut chosen) =
         (ComboBox::from_id_salt("simulated model").width(104.0), simulated.model.as_str());
-    choice_ui(ui, list, "Simulated model", &mut chosen, models, name_of)
-        .on_hover_text("Which controller is simulated in this program");
+    choice_ui(ui, list, &word("bar", "Simulated model"), &mut chosen, models, name_of)
+        .on_hover_text(word("bar", "Which controller is simulated in this program"));
     if chosen != simulated.model {
         simulated.model = chosen.to_owned();
     }
@@ -309,17 +316,21 @@ fn model_ui(ui: &mut Ui, simulated: &mut Simulated) {
 /// Which family the controllers at a port are of.
 fn family_ui(ui: &mut Ui, chosen: &mut FamilyChoice) {
     let list = ComboBox::from_id_salt("family").width(168.0);
-    let response = choice_ui(ui, list, "Controller family", chosen, FamilyChoice::all(), FamilyChoice::label);
-    let help = "Find out asks for MCP and RoboClaw first, then for Motion Minds, at one bit rate. Choosing the family is quicker, and \
-                brings its usual bit rate.";
+    let name = word("bar", "Controller family");
+    let response = choice_ui(ui, list, &name, chosen, FamilyChoice::all(), FamilyChoice::label);
+    let help = word(
+        "bar",
+        "Find out asks for MCP and RoboClaw first, then for Motion Minds, at one bit rate. Choosing the family is quicker, and \
+                brings its usual bit rate.",
+    );
     response.on_hover_text(help);
 }
 
 fn address_ui(ui: &mut Ui, shown: Addresses, family: &dyn Family) -> Addresses {
     let text = |addresses: Addresses| match addresses {
-        Addresses::Scan => "Scan all".to_owned(),
-        Addresses::These(_) => "Several".to_owned(),
-        Addresses::Factory => "Factory".to_owned(),
+        Addresses::Scan => word("bar", "Scan all"),
+        Addresses::These(_) => word("bar", "Several"),
+        Addresses::Factory => word("bar", "Factory"),
         Addresses::Only(address) => family.address_label(address),
     };
     let mut chosen = shown;
@@ -328,20 +339,20 @@ fn address_ui(ui: &mut Ui, shown: Addresses, family: &dyn Family) -> Addresses {
     let each = std::iter::once(Addresses::Scan).chain(each.map(Addresses::Only));
     let (all, cost) = (family.family().addresses(), family.scan_cost());
     let help = said(&ShellMessage::WhichAddresses { all, cost });
-    choice_ui(ui, list, "Address", &mut chosen, each, text).on_hover_text(help);
+    choice_ui(ui, list, &word("bar", "Address"), &mut chosen, each, text).on_hover_text(help);
     chosen
 }
 
 fn baud_ui(ui: &mut Ui, chosen: &mut u32) {
     let list = ComboBox::from_id_salt("baud").width(64.0);
-    choice_ui(ui, list, "Baud rate", chosen, BAUD_RATES, |baud| baud.to_string())
-        .on_hover_text("The rate the controller's serial port is set to");
+    choice_ui(ui, list, &word("bar", "Baud rate"), chosen, BAUD_RATES, |baud| baud.to_string())
+        .on_hover_text(word("bar", "The rate the controller's serial port is set to"));
 }
 
 fn recent_ui(ui: &mut Ui, devices: &Devices, commands: &mut Commands) {
     let recent = &devices.recent;
     let menu = ui.add_enabled_ui(!recent.is_empty(), |ui| {
-        let button = egui::Button::new("Recent").min_size(vec2(RECENT_WIDTH, 0.0));
+        let button = egui::Button::new(word("bar", "Recent")).min_size(vec2(RECENT_WIDTH, 0.0));
         MenuButton::from_button(button).ui(ui, |ui| {
             ui.set_min_width(200.0);
             for target in recent {
@@ -351,13 +362,13 @@ fn recent_ui(ui: &mut Ui, devices: &Devices, commands: &mut Commands) {
                 }
             }
             ui.separator();
-            if ui.button("Forget all").clicked() {
+            if ui.button(word("bar", "Forget all")).clicked() {
                 commands.extend(recent.iter().cloned().map(Command::ForgetRecent));
                 ui.close();
             }
         })
     });
-    menu.inner.0.on_hover_text("Connections of before");
+    menu.inner.0.on_hover_text(word("bar", "Earlier connections"));
 }
 
 /// Connects to what is chosen, or ends the link to it.
@@ -367,11 +378,11 @@ fn connect_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     let end = connection.map(|connection| Command::Disconnect(connection.id()));
     let searching = connection.and_then(|connection| connection.link.searching.as_ref());
     let (text, command) = match connection.map(|connection| &connection.phase) {
-        None | Some(Phase::Closed) => ("Connect", Some(Command::Connect)),
-        Some(Phase::Opening { .. }) => ("Cancel", end),
-        Some(Phase::Open { .. }) if searching.is_some() => ("Cancel", end),
-        Some(Phase::Open { .. }) => ("Disconnect", end),
-        Some(Phase::Closing { .. }) => ("Disconnecting", None),
+        None | Some(Phase::Closed) => (word("bar", "Connect"), Some(Command::Connect)),
+        Some(Phase::Opening { .. }) => (word("bar", "Cancel"), end),
+        Some(Phase::Open { .. }) if searching.is_some() => (word("bar", "Cancel"), end),
+        Some(Phase::Open { .. }) => (word("bar", "Disconnect"), end),
+        Some(Phase::Closing { .. }) => (word("bar", "Disconnecting"), None),
     };
     ui.add_enabled_ui(command.is_some(), |ui| {
         if ui.add_sized(vec2(ui.available_width(), 30.0), egui::Button::new(text)).clicked() {
@@ -401,7 +412,7 @@ fn units_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing.y = 1.0;
         if has_own {
-            heading_ui(ui, "Units on this link");
+            heading_ui(ui, &word("bar", "Units on this link"));
             for unit in &front.link.units {
                 board_ui(ui, front, unit, true, commands);
             }

@@ -42,9 +42,15 @@ fn script_ui(ui: &mut Ui, model: &Model) {
     ui.add_space(4.0);
     let color = Palette::of(ui).warning;
     let note = if model.front.script_is_paused() {
-        "The debugger holds the script where it is. What it told the motors stays in force: Stop All stops them and ends it."
+        word(
+            "bar",
+            "The debugger holds the script where it is. Its last motor commands stay in force: Stop All stops the motors and ends it.",
+        )
     } else {
-        "A script commands the motors by itself. Stop All ends it; so does leaving the MCL screen it was started from."
+        word(
+            "bar",
+            "A script commands the motors by itself. Stop All ends it; so does leaving the MCL screen it was started from.",
+        )
     };
     ui.add(Label::new(RichText::new(notice).strong().color(color)).truncate()).on_hover_text(note);
 }

@@ -6,6 +6,7 @@ use egui::{Align, Label, Layout, RichText, Role, Ui, WidgetInfo, vec2};
 use super::marks;
 use crate::command::{Command, Commands};
 use crate::focus::{Region, region_ui};
+use crate::language::{said_message, word};
 use crate::model::message::Message;
 use crate::model::{Gravity, IndicatorState, Model};
 
@@ -43,9 +44,9 @@ fn shown_ui(ui: &mut Ui, message: &Message, commands: &mut Commands) {
     ui.allocate_ui_with_layout(vec2(text_width, HEIGHT), Layout::left_to_right(Align::Center), |ui| {
         ui.set_min_size(vec2(text_width, HEIGHT));
         // Two lines fit; what is longer is shown in full by a pointer over it.
-        let words = message.text.to_string();
+        let words = said_message(&message.text);
         let text = ui.add(Label::new(&words).wrap()).on_hover_text(&words);
-        let spoken = format!("{}: {words}", word(message.gravity));
+        let spoken = format!("{}: {words}", gravity_word(message.gravity));
         text.widget_info(|| WidgetInfo::labeled(Role::Alert, true, &spoken));
         let live = match message.gravity {
             Gravity::Note => Live::Polite,
@@ -53,25 +54,26 @@ fn shown_ui(ui: &mut Ui, message: &Message, commands: &mut Commands) {
         };
         ui.ctx().accesskit_node_builder(text.id, |node| node.set_live(live));
     });
-    if ui.button("Dismiss").clicked() {
+    if ui.button(word("bar", "Dismiss")).clicked() {
         commands.push(Command::DismissMessage);
     }
 }
 
 fn quiet_ui(ui: &mut Ui, model: &Model) {
     let text = match model.is_connected() {
-        true => "Nothing to report.",
-        false => {
-            "No controller is connected. Choose one at the left and press Connect; the simulated one is always there."
-        }
+        true => word("bar", "Nothing to report."),
+        false => word(
+            "bar",
+            "No controller is connected. Choose one at the left and press Connect; the simulated one is always there.",
+        ),
     };
     ui.add(Label::new(RichText::new(text).weak()).wrap());
 }
 
-const fn word(gravity: Gravity) -> &'static str {
+fn gravity_word(gravity: Gravity) -> String {
     match gravity {
-        Gravity::Note => "Note",
-        Gravity::Warning => "Warning",
-        Gravity::Error => "Error",
+        Gravity::Note => word("gravity", "Note"),
+        Gravity::Warning => word("gravity", "Warning"),
+        Gravity::Error => word("gravity", "Error"),
     }
 }

@@ -23,6 +23,35 @@ messages! {
 }
 
 messages! {
+    /// A row of the device list.
+    pub enum DeviceRowMessage {
+        Row { title: String, detail: String, state: String } "{title}: {detail}, {state}",
+        InFront { row: String } "{row}, in front",
+        Hint { title: String, detail: String, state: String } "{title}\n{detail}\n{state}",
+        DisconnectFrom { title: String } "Disconnect from {title}",
+        Forget { title: String } "Forget {title}",
+    }
+}
+
+messages! {
+    /// How a device of the list stands.
+    pub enum DeviceStateMessage {
+        Available "available",
+        Closed "closed",
+        Gone "gone",
+        LinkLost "link lost",
+        NotOpened "could not be opened",
+        Connecting "connecting",
+        Disconnecting "disconnecting",
+        Looking "looking for controllers",
+        Connected "connected",
+        WithError "connected, error",
+        WithWarning "connected, warning",
+        Armed "connected, armed",
+    }
+}
+
+messages! {
     /// How the settings stand, in the bar at the bottom.
     pub enum BarMarkMessage {
         Settings { first: String, second: String } "Settings: {first}, {second}",

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use brushwork_gui::actions::{self, Menu};
 use brushwork_gui::language::{GERMAN, Language, key, said, word};
 use brushwork_gui::mcp::Mcp;
+use brushwork_gui::messages::LinkStatusMessage;
 use brushwork_gui::model::{IndicatorState, Screen};
 use brushwork_gui::motion_mind::MotionMind;
 use brushwork_gui::motorvator::Motorvator;
@@ -20,16 +21,27 @@ use fluent_bundle::{FluentBundle, FluentResource};
 use crate::support::bench::Bench;
 
 /// The themes of messages that the shell shows.
-const THEMES: [&str; 2] = ["ShellMessage", "BarMarkMessage"];
+const THEMES: [&str; 5] =
+    ["ShellMessage", "BarMarkMessage", "DeviceRowMessage", "DeviceStateMessage", "LinkStatusMessage"];
 /// Members of other themes that it shows.
-const MEMBERS: [&str; 6] = [
+const MEMBERS: [&str; 14] = [
     "ButtonMessage.ConnectTo",
     "ButtonMessage.Copies",
     "ButtonMessage.Open",
     "ButtonMessage.Run",
     "ButtonMessage.StopAll",
     "PanelMessage.Toolbar",
+    "WindowStatusMessage.Disconnected",
+    "WindowStatusMessage.GaveUp",
+    "WindowStatusMessage.TunedNotApplied",
+    "WindowStatusMessage.AsPredicted",
+    "OutcomeMessage.Applied",
+    "OutcomeMessage.Written",
+    "PathMessage.BackupMade",
+    "SaveMessage.Verified",
 ];
+/// A table that the message line shows too, beside those of the window.
+const OF_THE_LINK: &str = include_str!("../../../../device/link/src/messages.rs");
 
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).expect("the languages have a folder") {
@@ -88,6 +100,7 @@ fn wanted() -> BTreeMap<String, BTreeSet<String>> {
     for path in files.iter().filter(|path| path.ends_with("messages.rs")) {
         wanted_messages(&std::fs::read_to_string(path).expect("a source of the repository"), &mut wanted);
     }
+    wanted_messages(OF_THE_LINK, &mut wanted);
     wanted
 }
 
@@ -100,8 +113,9 @@ fn wanted_messages(source: &str, wanted: &mut BTreeMap<String, BTreeSet<String>>
         } else if let Some((head, words)) = line.strip_suffix("\",").and_then(|line| line.split_once(" \"")) {
             let key = format!("{theme}.{}", head.split_whitespace().next().expect("a member has a name"));
             if THEMES.contains(&theme) || MEMBERS.contains(&key.as_str()) {
-                let values =
-                    words.split('{').skip(1).filter_map(|rest| Some(rest.split_once('}')?.0.to_owned()));
+                // A value may have its digits behind its name.
+                let name = |rest: &str| Some(rest.split(['}', ':']).next()?.to_owned());
+                let values = words.split('{').skip(1).filter_map(name);
                 wanted.insert(key, values.collect());
             }
         }
@@ -181,6 +195,8 @@ fn the_window_is_drawn_in_german_at_once_and_in_english_again() {
     }
     assert!(bench.sees("Einstellungen: kein Regler, kein Profil offen"));
     assert!(bench.sees("ESTP: unbekannt"));
+    assert!(bench.sees("Simuliert: MCP266: in diesem Programm, verfügbar"));
+    assert!(bench.sees_part("Kein Regler ist verbunden."));
     bench.harness.set_render_cursor(false);
     bench.harness.snapshot("german");
     bench.press("Gerät");
@@ -191,4 +207,30 @@ fn the_window_is_drawn_in_german_at_once_and_in_english_again() {
     bench.press("English");
     bench.pass_ms(200);
     assert!(is_menu(&bench, "File") && bench.sees("ESTP: unknown"));
+}
+
+#[test]
+fn device_list_and_message_line_are_german_too_with_figures_as_germans_write_them() {
+    let mut bench = Bench::new();
+    bench.press("View");
+    bench.press("Deutsch");
+    bench.pass_ms(200);
+    bench.press("Verbinden");
+    bench.pass_ms(1500);
+    assert!(bench.sees_part("Hinweis: Verbunden mit MCP266 an sim:mcp266"), "{:?}", bench.said());
+    assert!(bench.sees_part(", verbunden") && bench.sees("Trennen"));
+    bench.press("PWM");
+    bench.press("Arm");
+    bench.pass_ms(500);
+    assert!(bench.sees_part(", verbunden, scharf"));
+    bench.key(egui::Key::Escape);
+    bench.pass_ms(500);
+    assert!(bench.sees_part("Hinweis: Angehalten. Der Haltebefehl war nach 0"), "{:?}", bench.said());
+    let measured = LinkStatusMessage::Stopped { milliseconds: 1.087_31 };
+    let stopped = said(&measured);
+    assert!(stopped.contains(" nach 1,1 ms auf der Leitung"), "{stopped}");
+    bench.press("Trennen");
+    bench.pass_ms(1000);
+    assert!(bench.sees_part("Hinweis: Getrennt."));
+    assert!(bench.said().contains(&"Disconnected.".to_owned()), "what is kept is English");
 }
