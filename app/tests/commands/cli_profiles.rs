@@ -1,6 +1,6 @@
 //! Settings that cannot be lost, from the command line: backups, comparisons, copies, what was cut short.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::cli::{
     DIFFERENT, DONE, NOT_TAKEN, REFUSED, Run, USAGE, edit, exported, name, program_keeping_in, run, settings,
@@ -128,9 +128,9 @@ fn one_motor_is_copied_to_the_other() {
 #[test]
 fn a_full_disk_and_a_folder_that_cannot_be_written_are_sentences_and_the_old_file_stays() {
     let (folder, file) = exported("sim:mcp266");
-    let before = std::fs::read_to_string(&file).unwrap();
     #[cfg(unix)]
     {
+        let before = std::fs::read_to_string(&file).unwrap();
         // A limit of one block per file stands for a full disk: the write fails midway.
         let full = format!(
             "trap '' XFSZ; ulimit -f 8; exec '{}' settings export '{}' --force",
@@ -155,6 +155,7 @@ fn a_full_disk_and_a_folder_that_cannot_be_written_are_sentences_and_the_old_fil
 #[cfg(unix)]
 mod on_a_pseudo_terminal {
     use brushwork_child::Program;
+    use std::path::Path;
 
     use super::*;
     use crate::cli::{LIMIT, Simulated};

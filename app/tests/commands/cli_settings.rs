@@ -1,8 +1,6 @@
 //! `brushwork settings` as a person or a script runs it: the built program, its output and its exit codes.
 
-use crate::cli::{
-    DIFFERENT, DONE, NO_LINK, NOT_TAKEN, REFUSED, USAGE, edit, exported, name, program, settings,
-};
+use crate::cli::{DIFFERENT, DONE, NOT_TAKEN, REFUSED, USAGE, edit, exported, name, settings};
 use serde_json::Value;
 
 #[test]
@@ -232,7 +230,7 @@ mod on_a_pseudo_terminal {
     use brushwork_plant::server::{Endpoint, Server, ServerOptions, SimHandle};
 
     use super::*;
-    use crate::cli::{LIMIT, Simulated};
+    use crate::cli::{LIMIT, NO_LINK, Simulated, program};
 
     #[test]
     fn what_one_command_writes_the_next_one_reads() {

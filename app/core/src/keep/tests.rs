@@ -254,7 +254,7 @@ fn damaged_files_of_a_unit_are_named_and_never_count_as_nothing() {
             fs::write(folder.path().join(kind).join(&name), text).unwrap();
         }
         let wear = store.wear(&unit()).unwrap_err().to_string();
-        assert!(wear.contains("is damaged") && wear.contains("the next save counts anew"), "{wear}");
+        assert!(wear.contains("is damaged") && wear.contains("the next save begins a new count"), "{wear}");
         assert!(store.eeprom(&unit()).unwrap_err().to_string().contains("counts as not known"));
         assert!(store.raw_writes(&unit()).unwrap_err().to_string().contains("written raw"));
     }

@@ -1,6 +1,6 @@
 //! The pages of running text, and the list of shortcuts.
 
-use egui::Ui;
+use egui::{Label, RichText, Ui};
 
 use crate::actions::{self, Keys, Menu};
 use crate::messages::NameMessage;
@@ -104,10 +104,10 @@ fn table_ui(ui: &mut Ui, title: &str, rows: &[(&str, &str, &str)]) {
     ui.add_space(4.0);
     ui.strong(title);
     for (keys, what, help) in rows {
-        ui.horizontal(|ui| {
+        ui.horizontal_top(|ui| {
             fixed_label_ui(ui, keys, KEYS_WIDTH);
             fixed_label_ui(ui, what, WHAT_WIDTH);
-            ui.weak(*help);
+            ui.add(Label::new(RichText::new(*help).weak()).wrap());
         });
     }
 }

@@ -113,7 +113,7 @@ fn labelled_ui(ui: &mut Ui, label: &str, field: &Numeric<'_>, value: &mut f64) {
 }
 
 fn shape_ui(ui: &mut Ui, shape: &mut Shape) {
-    let list = ComboBox::from_id_salt("shape").width(168.0);
+    let list = ComboBox::from_id_salt("shape").width(156.0);
     let response = choice_ui(ui, list, "Shape", shape, Shape::ALL, Shape::title);
     let hint =
         "A step and a square wave change at once; a trapezoid and a jog keep to Accel, Decel and Speed";

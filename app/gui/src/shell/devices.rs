@@ -16,10 +16,12 @@ use crate::model::{Arming, Connection, ConnectionId, IndicatorState, Model, Phas
 use crate::screens::face;
 use crate::shell::messages::{DeviceRowMessage, DeviceStateMessage as Stands, ShellMessage};
 use crate::theme::Palette;
-use crate::widgets::{choice_ui, heading_ui, text_field_ui};
+use crate::widgets::{choice_ui, elided, heading_ui, text_field_ui};
 
 const ROW_HEIGHT: f32 = 54.0;
 const RECENT_WIDTH: f32 = 70.0;
+/// Room of the small button in the corner of a row.
+const END_WIDTH: f32 = 22.0;
 
 pub fn devices_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     heading_ui(ui, &word("bar", "Attached devices"));
@@ -229,17 +231,13 @@ fn paint_row(ui: &Ui, rect: Rect, row: &Row, (chosen, in_front): (bool, bool), r
         painter.rect_stroke(frame, 3.0, Stroke::new(1.0, palette.accent), StrokeKind::Outside);
         room.max.x = frame.left() - 4.0;
     }
-    let title = painter.with_clip_rect(room);
-    title.text(pos2(left, rect.top() + 5.0), Align2::LEFT_TOP, &row.title, body, palette.text);
-    let below = painter.with_clip_rect(rect.shrink(4.0));
-    below.text(
-        pos2(left, rect.top() + 23.0),
-        Align2::LEFT_TOP,
-        &row.detail,
-        small.clone(),
-        palette.weak_text,
-    );
-    below.text(pos2(left, rect.bottom() - 5.0), Align2::LEFT_BOTTOM, said(&row.state.0), small, palette.text);
+    let title_at = (pos2(left, rect.top() + 5.0), Align2::LEFT_TOP);
+    elided(&painter, title_at, (&row.title, body, palette.text), room.right() - left);
+    let (below, width) = ((pos2(left, rect.top() + 23.0), Align2::LEFT_TOP), rect.right() - 4.0 - left);
+    elided(&painter, below, (&row.detail, small.clone(), palette.weak_text), width);
+    let at_the_end = (pos2(left, rect.bottom() - 5.0), Align2::LEFT_BOTTOM);
+    let end_width = if row.connection.is_some() { END_WIDTH } else { 0.0 };
+    elided(&painter, at_the_end, (&said(&row.state.0), small, palette.text), width - end_width);
 }
 
 fn hint_ui(ui: &mut Ui, devices: &Devices) {

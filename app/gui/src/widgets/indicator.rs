@@ -11,6 +11,7 @@ use egui::{
 use crate::language::word;
 use crate::model::indicator::IndicatorState;
 use crate::theme::{self, Palette};
+use crate::widgets::elided;
 
 impl IndicatorState {
     pub const fn color(self, palette: &Palette) -> Color32 {
@@ -148,7 +149,8 @@ pub fn full_ui(
     let left = pos2(rect.left() + 36.0, y);
     painter.text(left, Align2::LEFT_CENTER, abbreviation, small, palette.weak_text);
     // A name that has no room ends before the word.
-    let painter = painter.with_clip_rect(rect.with_max_x(word.left() - 6.0));
-    painter.text(left + vec2(46.0, 0.0), Align2::LEFT_CENTER, name, body, palette.text);
-    response
+    let at = left + vec2(46.0, 0.0);
+    let is_whole =
+        elided(&painter, (at, Align2::LEFT_CENTER), (name, body, palette.text), word.left() - 6.0 - at.x);
+    if is_whole { response } else { response.on_hover_text(name) }
 }

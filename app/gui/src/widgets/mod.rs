@@ -2,6 +2,7 @@
 
 pub mod arm_switch;
 pub mod choice;
+mod elided;
 pub mod heading;
 pub mod indicator;
 pub mod jog;
@@ -14,6 +15,7 @@ pub mod stop;
 pub mod text_field;
 
 pub use choice::choice_ui;
+pub use elided::elided;
 pub use heading::heading_ui;
 pub use label::fixed_label_ui;
 pub use numeric::Numeric;

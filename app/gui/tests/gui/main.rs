@@ -1,5 +1,6 @@
 //! The window without a display, against simulated controllers in virtual time.
 
+mod album;
 mod buses;
 mod clamp;
 mod debugger;

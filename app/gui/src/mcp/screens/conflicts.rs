@@ -11,7 +11,9 @@ pub fn conflicts_ui(ui: &mut Ui, general: &mut GeneralView<'_>, height: f32) {
     let Some(unit) = general.unit() else { return };
     let conflicts = unit.conflicts();
     let mut wanted = None;
-    let size = vec2(ui.available_width(), height);
+    // Beside the panel of the simulated world less is in view than there is room for rows.
+    let in_view = ui.clip_rect().right() - ui.cursor().left();
+    let size = vec2(ui.available_width().min(in_view), height);
     ui.allocate_ui_with_layout(size, Layout::top_down(egui::Align::Min), |ui| {
         ui.set_min_height(height);
         ui.label(RichText::new("Conflicts").size(16.0).strong());

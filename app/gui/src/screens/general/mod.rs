@@ -99,7 +99,7 @@ fn section_ui(
 ) {
     let room = ui.available_height();
     let help_height = help::height(room);
-    let height = room - help_height - ui.spacing().item_spacing.y;
+    let height = (room - help_height - ui.spacing().item_spacing.y).max(0.0);
     // Pages without rows have nothing to explain.
     let has_rows = !matches!(model.front.general.section, Section::Conflicts | Section::ClampTest)
         || model.front.general.is_filtered();

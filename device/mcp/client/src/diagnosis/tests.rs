@@ -161,9 +161,9 @@ fn a_script_is_suspected_told_or_known_to_have_ended() {
     let image = settings(&[("script.autorun_delay", SettingValue::Int(500))]);
     let with = |script| diagnose(&Evidence { settings: Some(&image), script, ..Evidence::default() });
     assert!(
-        with(Script::NotKnown).sentence().to_string().contains("starts 500 ms after power-up may be at work")
+        with(Script::NotKnown).sentence().to_string().contains("starts 500 ms after power-up may be running")
     );
-    assert!(with(Script::Started).sentence().to_string().contains("a script is at work"));
+    assert!(with(Script::Started).sentence().to_string().contains("a script is running"));
     assert!(with(Script::Stopped).findings.is_empty());
     assert!(of_settings(&[("script.autorun_delay", SettingValue::Int(0))]).findings.is_empty());
 }

@@ -119,7 +119,23 @@ fn find(line: &mut Line<'_>, addresses: Addresses) -> Result<Vec<Speaker>, Excha
             found.push(speaker);
         }
     }
+    if is_scan && !found.is_empty() {
+        ask_again(line, &mut found)?;
+    }
     Ok(found)
+}
+
+/// Asks those once more that were silent on a line that has units: one that was late by itself would be missing from it.
+fn ask_again(line: &mut Line<'_>, found: &mut Vec<Speaker>) -> Result<(), ExchangeError> {
+    let heard: Vec<u8> = found.iter().map(|speaker| speaker.address.get()).collect();
+    for address in Address::ALL.iter().filter(|address| !heard.contains(&address.get())) {
+        let speaker = Speaker::new(*address);
+        if speaker.probe(line, SCAN_PATIENCE)? {
+            found.push(speaker);
+        }
+    }
+    found.sort_by_key(|speaker| speaker.address.get());
+    Ok(())
 }
 
 fn introduce(

@@ -129,7 +129,7 @@ fn arming_is_refused_when_the_controller_does_not_tell_its_time_out() {
     assert_eq!(
         refusal(bus, Some(Stream::Usb)),
         [
-            "Could not arm the motors on 0x80 at /dev/test: the controller does not tell its serial time-out, so nobody knows \
+            "Could not arm the motors on 0x80 at /dev/test: the controller does not tell its serial time-out, so it is not known \
           whether the motors would stop if this program died. Drive this controller with another program that you can watch."
         ]
     );
