@@ -5,6 +5,7 @@ use crate::support::alone::{LIMIT, alone};
 use crate::support::line::Line;
 use crate::support::one::One;
 use brushwork_family::Simulator as _;
+use brushwork_gui::model::general::Section;
 use brushwork_gui::motorvator::Motorvator;
 use brushwork_gui::parts::SimulatedWorld;
 use brushwork_link::Failure;
@@ -239,6 +240,21 @@ fn the_search_finds_the_smallest_waits_that_lose_no_steps() {
         let expected =
             [found.least, found.most, found.hold_percent].map(|value| Some(SettingValue::Int(value.into())));
         assert_eq!(settings, expected);
+    });
+}
+
+#[test]
+fn settings_open_at_the_first_part_that_the_board_has() {
+    alone("motorvator::settings_open_at_the_first_part_that_the_board_has", LIMIT, || {
+        let folder = tempfile::tempdir().expect("a temporary folder can be made");
+        let mut bench = connected(&folder);
+        bench.press("Stepper Settings");
+        bench.pass_ms(1500);
+        assert!(!bench.sees("No setting of this controller fits."), "its settings stand under Stepper");
+        let section = bench.app().model.front.general.section;
+        let table = bench.app().model.front.settings.unit().map(|unit| unit.table().rows().to_vec());
+        let first = table.and_then(|rows| rows.first().map(Section::of));
+        assert_eq!(Some(section), first);
     });
 }
 

@@ -3,7 +3,7 @@
 use brushwork_link::settings::Group;
 
 use super::General;
-use super::section::Section;
+use super::section::{Section, sections};
 use super::sheet::Sheet;
 use super::view::GeneralView;
 
@@ -44,6 +44,17 @@ impl General {
 }
 
 impl GeneralView<'_> {
+    /// Turns from a group of settings that this controller has none of to the first that it has.
+    pub fn leave_missing(&mut self) {
+        let Section::Group(_) = self.section else { return };
+        let there = self.unit().map(|unit| sections(unit.table())).unwrap_or_default();
+        if there.iter().all(|(section, _)| *section != self.section)
+            && let Some(first) = there.first().map(|(section, _)| *section)
+        {
+            self.section = first;
+        }
+    }
+
     /// Goes to a row and explains it.
     pub fn go_to(&mut self, key: &str) {
         let section = self.unit().and_then(|unit| unit.table().row(key)).map(Section::of);

@@ -68,6 +68,7 @@ pub fn sections_ui(
     own: &[OwnSection],
     own_ui: impl Fn(&mut Ui, &mut Model, f32, &mut Commands) -> bool,
 ) {
+    model.front.general_view().leave_missing();
     let size = ui.available_size();
     let recipes = model.front.family().recipes().map(|_| (Section::Recipes, "Recipes", String::new()));
     let own: Vec<OwnSection> = recipes.into_iter().chain(own.iter().cloned()).collect();
