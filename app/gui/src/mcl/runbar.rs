@@ -7,6 +7,7 @@ use egui::{Label, ProgressBar, RichText, Ui};
 
 use crate::command::{Command, Commands};
 use crate::debugger::DebugAction;
+use crate::family::Ability;
 use crate::model::messages::ScriptStateMessage;
 use crate::model::{Arming, IndicatorState, Model};
 use crate::screens::face;
@@ -68,7 +69,8 @@ fn board_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
 /// What stands in the way of arming, and what to mind while armed.
 pub fn reasons_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     let link = &model.front.link;
-    if model.is_connected() && link.stream.is_none() {
+    let has_streams = model.front.family().lacks(Ability::Streams).is_none();
+    if model.is_connected() && link.stream.is_none() && has_streams {
         stream_ui(ui, "port.", commands);
     }
     for refusal in &link.refusals {

@@ -398,6 +398,7 @@ fn a_macro_is_stepped_through_on_a_simulated_board_of_the_window_and_nothing_is_
             let folder = tempfile::tempdir().expect("a temporary folder can be made");
             let mut bench = connected(&folder, &[]);
             bench.press("Macros");
+            assert!(!bench.sees("This port goes to the controller's"), "it has no streams to choose from");
             bench.app().model.mcl.open_named("slide.macros", "macro go = 3\n    MA 500, WS 50\n    CN 1\n");
             bench.pass_ms(500);
             let halted = |bench: &mut Bench| bench.app().model.mcl.front().run.halted_at;
