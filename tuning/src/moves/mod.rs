@@ -74,7 +74,7 @@ pub(crate) fn by_moves<L: Law>(
     guard.progress("Measuring the lag and the rate of the loop");
     let found = stiff_strokes(guard, request, &ground, found, &mut stretches)?;
     report.fit = Some(found.fit);
-    believe(&found, ground.most >= guard.facts.longest_move_counts)?;
+    believe(&found, guard.facts.longest_move_counts)?;
     report.seconds.0 = guard.now_s();
     let task = task_of(request, &found);
     report.qpps = Some(task.qpps);
@@ -238,15 +238,17 @@ fn reach<L: Law>(stretch: &Stretch<L>) -> f64 {
     counts().fold(f64::NEG_INFINITY, f64::max) - counts().fold(f64::INFINITY, f64::min)
 }
 
-fn believe(found: &Found, is_longest: bool) -> Result<(), Cause> {
+fn believe(found: &Found, longest_move_counts: f64) -> Result<(), Cause> {
     if found.fit.chi_square > WORST_CHI_SQUARE {
         return Err(Cause::PoorFit);
     }
-    match found.fit.sd_ln_tau > LOOSEST_TAU {
-        true if is_longest => Err(Cause::MovesTooShort),
-        true => Err(Cause::TooCoarse),
-        false => Ok(()),
+    if found.fit.sd_ln_tau <= LOOSEST_TAU {
+        return Ok(());
     }
+    // A motor that would have been moved farther, had the controller let it.
+    let model = found.fit.model;
+    let is_cut = position_step(model.gain_counts_per_s, model.tau_s) > longest_move_counts;
+    Err(if is_cut { Cause::MovesTooShort } else { Cause::TooCoarse })
 }
 
 /// What gains are designed for.
