@@ -153,14 +153,24 @@ pub trait Recipes: Sync {
         &Goal::USUAL
     }
 
-    /// Why it has no recipe for one of them, and what to do instead.
-    fn without(&self, _goal: Goal) -> Option<&'static str> {
-        None
+    /// Why it has no recipe for some of them, and what to do instead.
+    fn reasons(&self) -> &'static [(Goal, &'static str)] {
+        &[]
+    }
+
+    /// The screens on which recipes go on.
+    fn places(&self) -> &'static [(Goal, Place)] {
+        &[]
+    }
+
+    /// Why it has no recipe for one of its goals.
+    fn without(&self, goal: Goal) -> Option<&'static str> {
+        self.reasons().iter().find(|(of, _)| *of == goal).map(|(_, reason)| *reason)
     }
 
     /// The screen on which a recipe goes on.
-    fn goes_on(&self, _goal: Goal) -> Option<Place> {
-        None
+    fn goes_on(&self, goal: Goal) -> Option<Place> {
+        self.places().iter().find(|(of, _)| *of == goal).map(|(_, place)| *place)
     }
 
     /// How many motors a controller has.

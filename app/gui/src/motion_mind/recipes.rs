@@ -288,6 +288,30 @@ const GOALS: &[Goal] = &[
     Goal::Address,
 ];
 
+/// What it has no recipe for.
+const REASONS: &[(Goal, &str)] = &[
+    (
+        Goal::Home,
+        "A Motion Mind 3 has no home input. Its limit inputs stop the motor and set no position; the place of an encoder's index pulse is \
+                 read as INDEXPOS, and POSITION can be written.",
+    ),
+    (
+        Goal::TimeOut,
+        "A Motion Mind 3 has no serial time-out: a motor goes on with what it was told last when the cable or the computer dies. Have a switch for its \
+                 power at hand, set virtual limits, or wire a contact to _BRAKE.",
+    ),
+    (Goal::Battery, "A Motion Mind 3 does not measure its supply, and has no limit for it."),
+];
+
+/// The screens on which recipes go on.
+const PLACES: &[(Goal, Place)] = &[
+    (Goal::Stick, Place::Screen(Screen::Inputs)),
+    (Goal::Limit, Place::Screen(Screen::Inputs)),
+    (Goal::Buttons, Place::Screen(Screen::Inputs)),
+    (Goal::EStop, Place::Screen(Screen::Inputs)),
+    (Goal::Joystick, Place::Screen(Screen::Inputs)),
+];
+
 /// The recipes of this family.
 pub struct MindRecipes;
 
@@ -300,30 +324,12 @@ impl Recipes for MindRecipes {
         GOALS
     }
 
-    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
-    fn without(&self, goal: Goal) -> Option<&'static str> {
-        Some(match goal {
-            Goal::Home => {
-                "A Motion Mind 3 has no home input. Its limit inputs stop the motor and set no position; the place of an encoder's index pulse is \
-                 read as INDEXPOS, and POSITION can be written."
-            }
-            Goal::TimeOut => {
-                "A Motion Mind 3 has no serial time-out: a motor goes on with what it was told last when the cable or the computer dies. Have a switch for its \
-                 power at hand, set virtual limits, or wire a contact to _BRAKE."
-            }
-            Goal::Battery => "A Motion Mind 3 does not measure its supply, and has no limit for it.",
-            _ => return None,
-        })
+    fn reasons(&self) -> &'static [(Goal, &'static str)] {
+        REASONS
     }
 
-    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
-    fn goes_on(&self, goal: Goal) -> Option<Place> {
-        match goal {
-            Goal::Stick | Goal::Limit | Goal::Buttons | Goal::EStop | Goal::Joystick => {
-                Some(Place::Screen(Screen::Inputs))
-            }
-            _ => None,
-        }
+    fn places(&self) -> &'static [(Goal, Place)] {
+        PLACES
     }
 
     fn consequences(&self, unit: &Looked<'_>, told: &Told<'_>) -> Vec<(IndicatorState, Message)> {

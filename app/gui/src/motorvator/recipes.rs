@@ -86,6 +86,26 @@ const GOALS: &[Goal] = &[
     Goal::TimeOut,
 ];
 
+/// What it has no recipe for.
+const REASONS: &[(Goal, &str)] = &[
+    (
+        Goal::EStop,
+        "A MotorVator has no input of its own for an emergency stop: a program makes one of an on/off input, by an event whose handler says StopMotors and which no Wait keeps \
+                 away. It is no safety circuit: cut the power for that.",
+    ),
+    (Goal::Encoder, "A MotorVator has no encoder: it measures neither position nor speed."),
+    (Goal::Current, "A MotorVator measures no current and has no limit for it: choose a fuse for the motor."),
+    (Goal::Battery, "A MotorVator does not tell its supply."),
+];
+
+/// The screens on which recipes go on.
+const PLACES: &[(Goal, Place)] = &[
+    (Goal::Host, Place::Screen(Screen::Terminal)),
+    (Goal::Inputs, Place::Screen(Screen::Inputs)),
+    (Goal::Servo, Place::Screen(Screen::Pwm)),
+    (Goal::Stepper, Place::Screen(Screen::Position)),
+];
+
 /// The recipes of this family.
 pub struct MotorvatorRecipes;
 
@@ -98,30 +118,11 @@ impl Recipes for MotorvatorRecipes {
         GOALS
     }
 
-    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
-    fn without(&self, goal: Goal) -> Option<&'static str> {
-        Some(match goal {
-            Goal::EStop => {
-                "A MotorVator has no input of its own for an emergency stop: a program makes one of an on/off input, by an event whose handler says StopMotors and which no Wait keeps \
-                 away. It is no safety circuit: cut the power for that."
-            }
-            Goal::Encoder => "A MotorVator has no encoder: it measures neither position nor speed.",
-            Goal::Current => {
-                "A MotorVator measures no current and has no limit for it: choose a fuse for the motor."
-            }
-            Goal::Battery => "A MotorVator does not tell its supply.",
-            _ => return None,
-        })
+    fn reasons(&self) -> &'static [(Goal, &'static str)] {
+        REASONS
     }
 
-    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
-    fn goes_on(&self, goal: Goal) -> Option<Place> {
-        match goal {
-            Goal::Host => Some(Place::Screen(Screen::Terminal)),
-            Goal::Inputs => Some(Place::Screen(Screen::Inputs)),
-            Goal::Servo => Some(Place::Screen(Screen::Pwm)),
-            Goal::Stepper => Some(Place::Screen(Screen::Position)),
-            _ => None,
-        }
+    fn places(&self) -> &'static [(Goal, Place)] {
+        PLACES
     }
 }

@@ -169,6 +169,38 @@ const GOALS: &[Goal] = &[
     Goal::Address,
 ];
 
+/// What it has no recipe for.
+const REASONS: &[(Goal, &str)] = &[
+    (
+        Goal::EStop,
+        "A SuprMotr has no input for an emergency stop: its limit switches stop one direction each, and the character ! stops all units on the line. Cut the power of \
+                 the motor for an emergency.",
+    ),
+    (
+        Goal::Current,
+        "A SuprMotr has no setting for the current. Its driver gives 1 A continuously; the following error limit lets go of a motor that is blocked.",
+    ),
+    (
+        Goal::Battery,
+        "A SuprMotr does not measure its supply. It takes 9 to 12 V: more of it, or the wrong polarity, damages the controller.",
+    ),
+    (
+        Goal::TimeOut,
+        "A SuprMotr has no serial time-out: a move or a macro goes on when the cable or the computer dies. Limit switches end it at the ends of the axis.",
+    ),
+];
+
+/// The screens on which recipes go on.
+const PLACES: &[(Goal, Place)] = &[
+    (Goal::Home, Place::Drawer(Screen::Position, Tab::Home)),
+    (Goal::Limit, Place::Screen(Screen::Inputs)),
+    (Goal::Inputs, Place::Screen(Screen::Inputs)),
+    (Goal::Outputs, Place::Screen(Screen::Inputs)),
+    (Goal::Brake, Place::Screen(Screen::Inputs)),
+    (Goal::Start, Place::Screen(Screen::MclEditor)),
+    (Goal::Line, Place::Screen(Screen::Terminal)),
+];
+
 /// The recipes of this family.
 pub struct SuprMotrRecipes;
 
@@ -181,35 +213,12 @@ impl Recipes for SuprMotrRecipes {
         GOALS
     }
 
-    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
-    fn without(&self, goal: Goal) -> Option<&'static str> {
-        Some(match goal {
-            Goal::EStop => {
-                "A SuprMotr has no input for an emergency stop: its limit switches stop one direction each, and the character ! stops all units on the line. Cut the power of \
-                 the motor for an emergency."
-            }
-            Goal::Current => {
-                "A SuprMotr has no setting for the current. Its driver gives 1 A continuously; the following error limit lets go of a motor that is blocked."
-            }
-            Goal::Battery => {
-                "A SuprMotr does not measure its supply. It takes 9 to 12 V: more of it, or the wrong polarity, damages the controller."
-            }
-            Goal::TimeOut => {
-                "A SuprMotr has no serial time-out: a move or a macro goes on when the cable or the computer dies. Limit switches end it at the ends of the axis."
-            }
-            _ => return None,
-        })
+    fn reasons(&self) -> &'static [(Goal, &'static str)] {
+        REASONS
     }
 
-    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
-    fn goes_on(&self, goal: Goal) -> Option<Place> {
-        match goal {
-            Goal::Home => Some(Place::Drawer(Screen::Position, Tab::Home)),
-            Goal::Limit | Goal::Inputs | Goal::Outputs | Goal::Brake => Some(Place::Screen(Screen::Inputs)),
-            Goal::Start => Some(Place::Screen(Screen::MclEditor)),
-            Goal::Line => Some(Place::Screen(Screen::Terminal)),
-            _ => None,
-        }
+    fn places(&self) -> &'static [(Goal, Place)] {
+        PLACES
     }
 
     fn consequences(&self, unit: &Looked<'_>, told: &Told<'_>) -> Vec<(IndicatorState, Message)> {
