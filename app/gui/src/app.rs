@@ -3,7 +3,7 @@
 //! [`App::contents`] draws one frame and is all that eframe, the tests and the benchmarks need. It takes its time from
 //! the link's own clock and its links from outside ([`Parts`]), and never waits for a byte.
 
-use crate::messages::WindowStatusMessage;
+use crate::messages::{CompareMessage, GraphMessage, WindowStatusMessage};
 use brushwork_core::messages::EndedMessage;
 use brushwork_link::Message;
 use std::sync::Arc;
@@ -29,7 +29,7 @@ use super::remember::Memory;
 use super::screens::face;
 use super::{actions, keys, shell, theme};
 use crate::model::Afterwards;
-use crate::model::{Arming, Effect, Gravity, Owner, Screen, Section, Sheet, Tab};
+use crate::model::{Arming, Effect, Gravity, Owner, Screen, Section, Sheet, Side, Tab};
 
 mod assistants;
 mod debugging;
@@ -120,6 +120,7 @@ impl App {
         }
         focus::note_input(&ctx);
         self.update(&ctx);
+        self.look_as_before();
         self.leave_missing_screen();
         self.take_files(&ctx);
         let mut commands = actions::shortcuts(&ctx, &mut self.model);
@@ -158,6 +159,22 @@ impl App {
         }
     }
 
+    /// A unit that is met is looked at as it was the last time; its screen is gone to once, when its link was opened.
+    fn look_as_before(&mut self) {
+        let Some(unit) = self.model.front.unit_name() else { return };
+        if self.model.front.viewed_as.as_ref() == Some(&unit) {
+            return;
+        }
+        let view = self.memory.as_ref().and_then(|memory| memory.current.view_of(&unit)).cloned();
+        let was_met = self.model.front.viewed_as.replace(unit).is_some();
+        let Some(view) = view else { return };
+        self.model.front.look_as(&view);
+        let screen = self.model.front.screens().into_iter().find(|screen| screen.title() == view.screen);
+        if let Some(screen) = screen.filter(|_| !was_met) {
+            self.show(screen);
+        }
+    }
+
     /// Takes in what happened since the last frame.
     fn update(&mut self, ctx: &Context) {
         if let Some(listed) = self.parts.ports.newest() {
@@ -182,6 +199,11 @@ impl App {
         let Some(connection) = self.model.connection_mut(id) else { return };
         let dark = ctx.global_style().visuals.dark_mode;
         let said = connection.graph.poll_files(now, dark);
+        if let Some(image) = connection.graph.files.take_copied() {
+            ctx.copy_image(image);
+            self.model.messages.note(GraphMessage::CopiedPicture);
+        }
+        let Some(connection) = self.model.connection_mut(id) else { return };
         if connection.graph.files.is_busy() {
             ctx.request_repaint_after(FRAME_INTERVAL);
         }
@@ -356,6 +378,7 @@ impl App {
             Command::ListBackups => self.list_backups(),
             Command::ShowStart => model.show_start(),
             Command::OpenSheet(sheet) => self.open_sheet(sheet),
+            Command::CopyUnit => self.copy_unit(),
             Command::ShowSettings(section) => {
                 self.show(Screen::GeneralSettings);
                 self.model.front.general.turn_to(section);
@@ -436,7 +459,19 @@ impl App {
 
     fn open_sheet(&mut self, sheet: Sheet) {
         self.show(Screen::GeneralSettings);
+        if sheet == Sheet::Compare {
+            let others = self.model.other_units();
+            self.model.front.general_view().set_others(others);
+        }
         self.model.front.general_view().open_once_read(sheet);
+    }
+
+    fn copy_unit(&mut self) {
+        let Some(first) = self.model.other_units().into_keys().next() else {
+            return self.model.messages.warn(CompareMessage::NoOtherUnit);
+        };
+        self.open_sheet(Sheet::Compare);
+        self.model.front.general_view().compare_with(Side::Ram, Side::Unit(first));
     }
 
     fn open_drawer(&mut self, screen: Screen, tab: Tab) {

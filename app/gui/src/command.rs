@@ -79,6 +79,8 @@ pub enum Command {
     },
     /// Shows General Settings with a sheet in place of the list.
     OpenSheet(Sheet),
+    /// Sets the settings of another unit beside those of this one, to be taken over.
+    CopyUnit,
     /// Shows a recipe.
     ShowRecipe(Goal),
     /// Shows a part of General Settings.

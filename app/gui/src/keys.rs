@@ -3,8 +3,9 @@
 //! Esc stops from everywhere, whatever has the keyboard, and goes on to whatever it closes. Space stops too, and is taken out of the input
 //! altogether, so that it never presses the button that has focus (Enter does that); only a field for words keeps it.
 
-use egui::{Context, Event, Key};
+use egui::{Context, Event, InnerResponse, Key, KeyboardShortcut, LayerId, Modifiers, Order};
 
+use super::language::word;
 use super::widgets::text_field;
 
 /// What stopped the motors.
@@ -17,6 +18,32 @@ pub enum StopKey {
 /// The keys that stop now, in words: where a space is a letter it is not one of them.
 pub fn stop_words(ctx: &Context) -> &'static str {
     if text_field::takes_space(ctx) { "Esc" } else { "Space or Esc" }
+}
+
+/// The same in the language of the window.
+pub fn said_stop_words(ctx: &Context) -> String {
+    if text_field::takes_space(ctx) { "Esc".to_owned() } else { word("bar", "Space or Esc") }
+}
+
+/// Words with keys in them as this platform writes those: our tables have "Ctrl+T".
+pub fn as_written(ctx: &Context, words: &str) -> String {
+    let written = ctx.format_shortcut(&KeyboardShortcut::new(Modifiers::COMMAND, Key::A));
+    written.strip_suffix('A').map_or_else(|| words.to_owned(), |before| words.replace("Ctrl+", before))
+}
+
+/// Whether Esc closes a window: it is on top, with no list, menu or palette unfolded above it.
+pub fn escape_closes<R>(ctx: &Context, shown: Option<&InnerResponse<R>>) -> bool {
+    let layer = shown.map(|shown| shown.response.layer_id);
+    layer.is_some() && ctx.input(|input| input.key_pressed(Key::Escape)) && top_layer(ctx) == layer
+}
+
+/// What Esc closes first: the uppermost of the windows, lists, menus and the palette that stand above the screen.
+pub fn top_layer(ctx: &Context) -> Option<LayerId> {
+    ctx.memory(|memory| {
+        let visible = memory.areas().visible_layer_ids();
+        let is_above = |layer: &LayerId| matches!(layer.order, Order::Middle | Order::Foreground);
+        memory.layer_ids().filter(|layer| is_above(layer) && visible.contains(layer)).last()
+    })
 }
 
 /// Looks for a stop key and takes Space out of the input. Called before anything is drawn.

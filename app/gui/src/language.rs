@@ -52,6 +52,11 @@ pub fn said_message(message: &Message) -> String {
     translated(&message.key(), || message.values()).unwrap_or_else(|| message.to_string())
 }
 
+/// Whether a message has words in the language of the window; else it is English, and so is what stands beside it in its line.
+pub fn is_translated(message: &Message) -> bool {
+    translated(&message.key(), || message.values()).is_some()
+}
+
 /// A title or label in the language of the window: its key is its theme and its English words.
 pub fn word(theme: &str, english: &str) -> String {
     match CURRENT.get() {

@@ -297,6 +297,8 @@ messages! {
     pub enum CompareMessage {
         BackupGone "The backup is not there any more.",
         BackupNotOpened "The backup was not opened.",
+        UnitGone "The other unit is not connected any more.",
+        NoOtherUnit "No other unit of this family is connected whose settings were read. Open its link, or look at it once, and try again.",
         NoUnit "No controller is looked at.",
         NotRead "The settings have not been read.",
         NoProfile "No profile is open.",
@@ -373,6 +375,7 @@ messages! {
         RecordedUntilLost { samples: u64, path: String, size: String } "The recording ended with the link. Recorded {samples} samples to {path} ({size}).",
         RecordedUntilOther { samples: u64, path: String, size: String } "The recording ended: the controller has other channels. Recorded {samples} samples to {path} ({size}).",
         NoThread "Could not open the recording: the system gave no thread.",
+        CopiedPicture "The picture is on the clipboard.",
         NothingKept "Nothing was sampled yet: there is no history to save.",
         NoSample { path: String } "Could not open the recording {path}: there is no sample in it. Choose another file.",
         LeftOut { path: String, rows: u64 } "{path}: the oldest {rows} rows are left out; the rest fits in memory.",
@@ -409,7 +412,8 @@ messages! {
 messages! {
     /// Why a file has no place in the window.
     pub enum OpenFileMessage {
-        TooMany { count: usize, most: usize } "{count} files were dropped; the first {most} of them were opened.",
+        TooMany { count: usize, most: usize } "{count} files at once; the first {most} of them were opened.",
+        NoDialog "This desktop shows no file dialog. Type the path into the field beside the button, or drop the file on the window.",
         NoSuchLoop { screen: &'static str } "The report is not opened: it belongs on {screen}, which the controller in front does not have as it is set. Disconnect to look at it.",
         NoFirmware { why: &'static str } "The firmware image is not opened. {why}",
     }
@@ -538,6 +542,8 @@ messages! {
         Sketch { caption: &'static str } "Sketch: {caption}",
         NoValue { name: String } "{name}: no value",
         Progress { what: String, text: String } "Progress: {what}, {text}",
+        TimeLeft { text: String, seconds: f64 } "{text} · {seconds:.0} s left",
+        MomentLeft { text: String } "{text} · a moment left",
         Wiring { part: &'static str, wires: String } "Wiring: {part}, {wires}",
     }
 }

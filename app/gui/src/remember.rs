@@ -18,12 +18,15 @@ use egui::{Context, Rect, ThemePreference, ViewportInfo};
 use serde::{Deserialize, Serialize};
 
 use super::language::Language;
-use super::model::Model;
 use super::model::screen::Screen;
+use super::model::unit_view::UnitView;
+use super::model::Model;
 use brushwork_core::keep::folder;
 
 /// How long a change waits, so that a window being dragged does not write a file for each step, seconds.
 const SETTLE_S: f64 = 1.0;
+/// Units whose view is kept.
+const MOST_UNITS: usize = 12;
 /// Nobody has a desk further out than that, points.
 const FARTHEST: f32 = 30_000.0;
 
@@ -48,6 +51,8 @@ pub struct Remembered {
     pub world_width: f32,
     /// What the graph has of the height of each screen whose bar was moved, by the screen's title.
     pub graph_parts: BTreeMap<String, f32>,
+    /// How units were looked at, the one that was looked at last first.
+    pub units: Vec<UnitView>,
 }
 
 /// Where the window was, in points.
@@ -84,6 +89,7 @@ impl Default for Remembered {
             left_width: 0.0,
             world_width: 0.0,
             graph_parts: BTreeMap::new(),
+            units: Vec::new(),
         };
         remembered.look_at(&Model::default());
         remembered
@@ -108,6 +114,16 @@ impl Remembered {
         self.world_width = model.layout.world_width.round();
         let part = |screen: &Screen| Some((screen.title().to_owned(), model.layout.graph_part(*screen)?));
         self.graph_parts = Screen::ALL.iter().filter_map(part).collect();
+        if let Some(view) = model.front.unit_view(model.screen) {
+            self.units.retain(|known| known.unit != view.unit);
+            self.units.insert(0, view);
+            self.units.truncate(MOST_UNITS);
+        }
+    }
+
+    /// How a unit was looked at.
+    pub fn view_of(&self, unit: &str) -> Option<&UnitView> {
+        self.units.iter().find(|view| view.unit == unit)
     }
 
     /// Makes the window like it was.

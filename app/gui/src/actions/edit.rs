@@ -4,6 +4,7 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 
 use super::{Action, Keys, Ready, connected, ctrl, only};
 use crate::command::Command;
+use crate::messages::CompareMessage;
 use crate::model::{Model, Sheet, UnitSettings};
 
 pub(super) const ACTIONS: &[Action] = &[
@@ -17,7 +18,14 @@ pub(super) const ACTIONS: &[Action] = &[
         Keys::None, has_edits, |_| Command::RevertSettings),
     entry!(Edit 9 "edit.copy-motor", "Copy Motor 1 to Motor 2…", "Shows what would make the settings of motor 2 those of motor 1, as edits to be written.",
         Keys::None, connected, |_| Command::OpenSheet(Sheet::CopyMotor)),
+    entry!(Edit 9 "edit.copy-unit", "Copy Settings from Another Unit…", "Sets the settings of another unit of the open links beside those of this one, to be taken over as edits.",
+        Keys::None, can_copy_unit, |_| Command::CopyUnit),
 ];
+
+fn can_copy_unit(model: &Model) -> Ready {
+    connected(model)?;
+    only(!model.other_units().is_empty(), CompareMessage::NoOtherUnit.to_string())
+}
 
 fn can_undo(model: &Model) -> Ready {
     only(

@@ -52,6 +52,7 @@ pub(super) const ACTIONS: &[Action] = &[
     action!(8 "graph.export-csv", ExportCsv, "Writes the samples in view into a CSV file."),
     action!(8 "graph.export-png", ExportPng, "Writes the picture in view into a PNG file."),
     action!(8 "graph.export-svg", ExportSvg, "Writes the picture in view into an SVG file."),
+    action!(8 "graph.copy-picture", CopyPicture, "Puts the picture in view on the clipboard, with its head and legend."),
 ];
 
 fn on_a_graph(model: &Model) -> Ready {

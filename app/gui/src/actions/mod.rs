@@ -14,7 +14,7 @@ use brushwork_script::language::Language;
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 use super::command::{Command, Commands};
-use super::keys::stop_words;
+use super::keys::{as_written, said_stop_words};
 use super::mcl::has_keyboard;
 use super::model::Model;
 use super::model::screen::Screen;
@@ -64,6 +64,7 @@ mod help;
 pub mod messages;
 mod program;
 mod view;
+mod work;
 
 /// One thing that can be asked for.
 #[derive(Debug)]
@@ -143,7 +144,10 @@ pub enum Keys {
 const ABOUT_PROGRAMS: [&str; 4] = ["file.", "edit.", "view.", "device.check-mcl"];
 
 /// `Err` says in a sentence why an action cannot be done now.
-pub type Ready = Result<(), Cow<'static, str>>;
+pub type Ready = Result<(), Refused>;
+
+/// Why an action cannot be done now, in a sentence.
+type Refused = Cow<'static, str>;
 
 static OWN: OnceLock<Vec<&'static Action>> = OnceLock::new();
 
@@ -164,6 +168,7 @@ pub fn all() -> impl Iterator<Item = &'static Action> {
         program::EDIT,
         edit::ACTIONS,
         device::ACTIONS,
+        work::ACTIONS,
         debug::ACTIONS,
         view::ACTIONS,
         program::VIEW,
@@ -209,8 +214,8 @@ impl Action {
             | Keys::OnMcl(shortcut)
             | Keys::InText(shortcut)
             | Keys::Beside(shortcut) => ctx.format_shortcut(&shortcut),
-            Keys::Elsewhere(text) => text.to_owned(),
-            Keys::Stop => stop_words(ctx).to_owned(),
+            Keys::Elsewhere(text) => as_written(ctx, text),
+            Keys::Stop => said_stop_words(ctx),
         }
     }
 }

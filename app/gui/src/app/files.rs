@@ -9,41 +9,46 @@ use egui::Context;
 
 use super::App;
 use crate::family::Ability;
+use crate::files::take_missing;
 use crate::frame::FRAME_INTERVAL;
-use crate::graph::files::OpenAs;
+use crate::graph::files::{MOST_AT_ONCE, OpenAs};
 use crate::messages::{NameMessage, OpenFileMessage};
 use crate::model::open_files::SettingsFile;
 use crate::model::{Screen, Sheet, Tab};
 use crate::tune::Loop;
 use crate::tune::files::loop_of;
 
-/// Files of one drop that are opened.
-const MOST_DROPPED: usize = 8;
-
 impl App {
     /// Opens what was dropped on the window or chosen in the desktop's dialog.
     pub(super) fn take_files(&mut self, ctx: &Context) {
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
-        let mut recordings = 0;
-        for file in dropped.iter().take(MOST_DROPPED) {
-            // Of several recordings the first is looked at, and the others lie over it.
-            let is_recording = matches!(recognise(file.path()), Ok(KnownFile::Recording));
-            recordings += usize::from(is_recording);
-            if is_recording && recordings > 1 {
-                self.model.front.graph.files.lay_beneath(file.path());
-                self.model.files.remember(file.path());
-            } else {
-                self.open_file(file.path());
-            }
-        }
-        if dropped.len() > MOST_DROPPED {
-            self.model.messages.warn(OpenFileMessage::TooMany { count: dropped.len(), most: MOST_DROPPED });
-        }
-        if let Some(path) = self.model.files.chosen() {
-            self.open_file(&path);
-        }
+        let dropped: Vec<PathBuf> = dropped.iter().map(|file| file.path().to_owned()).collect();
+        self.open_files(&dropped);
+        let chosen = self.model.files.chosen();
+        self.open_files(&chosen);
         if self.model.files.is_browsing() {
             ctx.request_repaint_after(FRAME_INTERVAL);
+        }
+        if take_missing() {
+            self.model.messages.warn(OpenFileMessage::NoDialog);
+        }
+    }
+
+    /// Opens files that were named together. Of several recordings the first is looked at, and the others lie over it.
+    pub fn open_files(&mut self, paths: &[PathBuf]) {
+        let mut recordings = 0;
+        for path in paths.iter().take(MOST_AT_ONCE) {
+            let is_recording = matches!(recognise(path), Ok(KnownFile::Recording));
+            recordings += usize::from(is_recording);
+            if is_recording && recordings > 1 {
+                self.model.front.graph.files.lay_beneath(path);
+                self.model.files.remember(path);
+            } else {
+                self.open_file(path);
+            }
+        }
+        if paths.len() > MOST_AT_ONCE {
+            self.model.messages.warn(OpenFileMessage::TooMany { count: paths.len(), most: MOST_AT_ONCE });
         }
     }
 

@@ -8,6 +8,7 @@ use super::state::Debugging;
 use super::watches::remove_ui;
 use crate::command::{Command, Commands};
 use crate::debugger::messages::DebuggerMessage;
+use crate::keys::as_written;
 use crate::messages::NameMessage;
 use crate::theme::Palette;
 use crate::widgets::{heading_ui, text_field_ui};
@@ -63,7 +64,7 @@ fn breakpoints_ui(ui: &mut Ui, debug: &mut Debugging, commands: &mut Commands) {
         }
     });
     if debug.breakpoints.is_empty() {
-        ui.weak("Click left of a line number, or press Ctrl+F8.");
+        ui.weak(as_written(ui.ctx(), "Click left of a line number, or press Ctrl+F8."));
     }
     let states = debug.view.as_ref().map(|view| view.breakpoints.clone()).unwrap_or_default();
     let mut gone = None;

@@ -6,6 +6,7 @@ use egui::{ComboBox, RichText, Ui};
 
 use super::action::DebugAction;
 use crate::command::{Command, Commands};
+use crate::keys::as_written;
 use crate::model::{IndicatorState, Model};
 use crate::theme::Palette;
 use crate::widgets::choice_ui;
@@ -16,7 +17,8 @@ pub fn toolbar_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         let mut button = |ui: &mut Ui, enabled: bool, text: &str, hint: &str, action: DebugAction| {
-            let response = ui.add_enabled(enabled, egui::Button::new(text)).on_hover_text(hint);
+            let hint = as_written(ui.ctx(), hint);
+            let response = ui.add_enabled(enabled, egui::Button::new(text)).on_hover_text(&hint);
             if response.on_disabled_hover_text(hint).clicked() {
                 commands.push(Command::Debug(action));
             }

@@ -51,6 +51,7 @@ pub enum GraphAction {
     ExportCsv,
     ExportPng,
     ExportSvg,
+    CopyPicture,
 }
 
 impl GraphAction {
@@ -96,6 +97,7 @@ impl GraphAction {
             Self::ExportCsv => "Export what is in view as CSV",
             Self::ExportPng => "Export the picture as PNG",
             Self::ExportSvg => "Export the picture as SVG",
+            Self::CopyPicture => "Copy the picture",
         }
     }
 }
@@ -145,6 +147,7 @@ impl LiveGraph {
             GraphAction::ExportCsv => self.export(super::files::Export::Csv),
             GraphAction::ExportPng => self.export(super::files::Export::Png),
             GraphAction::ExportSvg => self.export(super::files::Export::Svg),
+            GraphAction::CopyPicture => self.copy_picture(),
             other => self.look(other),
         }
     }
@@ -199,7 +202,7 @@ impl LiveGraph {
 mod tests {
     use super::*;
 
-    const ALL: [GraphAction; 39] = [
+    const ALL: [GraphAction; 40] = [
         GraphAction::TogglePause,
         GraphAction::BackToLive,
         GraphAction::Earlier,
@@ -239,6 +242,7 @@ mod tests {
         GraphAction::ExportCsv,
         GraphAction::ExportPng,
         GraphAction::ExportSvg,
+        GraphAction::CopyPicture,
     ];
 
     #[test]

@@ -13,8 +13,8 @@ use std::time::{Duration, SystemTime};
 
 use brushwork_link::files::{Disk, Files as _, replace_file};
 use brushwork_link::{clock, work};
-use crossbeam_channel::{Receiver, bounded};
-use egui::vec2;
+use crossbeam_channel::{Receiver, TryRecvError, bounded};
+use egui::{ColorImage, vec2};
 
 use crate::files::{FileAction, FileDialog, FileKind};
 use crate::model::message::Gravity;
@@ -24,6 +24,9 @@ use brushwork_core::recording::{Record, dated_name, free_path};
 use super::load;
 
 mod live;
+
+/// Files that are opened at once.
+pub const MOST_AT_ONCE: usize = 8;
 
 /// Pictures are no smaller than this.
 const LEAST_PICTURE: egui::Vec2 = vec2(900.0, 420.0);
@@ -64,6 +67,8 @@ pub struct GraphFiles {
     /// Those that are read after it.
     waiting: VecDeque<(PathBuf, OpenAs)>,
     working: Vec<Receiver<Said>>,
+    /// A picture that is being drawn for the clipboard.
+    copying: Option<Receiver<ColorImage>>,
     dialog: Option<(Asked, FileDialog)>,
     /// Files that threads make or have made. A name is taken before its file is there.
     begun: HashSet<PathBuf>,
@@ -116,6 +121,7 @@ impl Default for GraphFiles {
             loading: None,
             waiting: VecDeque::new(),
             working: Vec::new(),
+            copying: None,
             dialog: None,
             begun: HashSet::new(),
             clocks: None,
@@ -142,6 +148,7 @@ impl GraphFiles {
         self.recording.is_some()
             || self.loading.is_some()
             || self.dialog.is_some()
+            || self.copying.is_some()
             || !self.working.is_empty()
     }
 
@@ -184,7 +191,7 @@ impl GraphFiles {
 
     pub fn choose_recording(&mut self) {
         let kind = FileKind { title: "Recording".to_owned(), extension: "bwr,csv,txt".to_owned() };
-        self.dialog = Some((Asked::Open, FileDialog::ask(FileAction::Open, kind)));
+        self.dialog = Some((Asked::Open, FileDialog::ask(FileAction::OpenSeveral, kind)));
     }
 
     /// Reads the file that was typed.
@@ -197,6 +204,30 @@ impl GraphFiles {
     pub fn open(&mut self, path: &Path) {
         self.give_up_loading();
         self.read(path, self.open_as);
+    }
+
+    /// Begins to read files that were chosen together: the first as what is to be opened, the others lie over it.
+    pub fn open_together(&mut self, paths: &[PathBuf]) {
+        if let Some((first, others)) = paths.split_first() {
+            self.open_path = first.display().to_string();
+            self.open(first);
+            others.iter().take(MOST_AT_ONCE - 1).for_each(|path| self.lay_beneath(path));
+        }
+    }
+
+    /// The picture that was drawn for the clipboard, once.
+    pub fn take_copied(&mut self) -> Option<ColorImage> {
+        match self.copying.as_ref()?.try_recv() {
+            Ok(image) => {
+                self.copying = None;
+                Some(image)
+            }
+            Err(TryRecvError::Empty) => None,
+            Err(TryRecvError::Disconnected) => {
+                self.copying = None;
+                None
+            }
+        }
     }
 
     /// Reads a file as a run beneath, after what is being read.

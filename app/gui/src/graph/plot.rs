@@ -11,7 +11,7 @@ use std::ops::RangeInclusive;
 use std::rc::Rc;
 
 use egui::{
-    Color32, CursorIcon, EventFilter, FontId, Id, Key, Modifiers, PointerButton, Pos2, Rangef, Rect,
+    Color32, CursorIcon, Event, EventFilter, FontId, Id, Key, Modifiers, PointerButton, Pos2, Rangef, Rect,
     Response, Role, Sense, Shape, Stroke, TextStyle, Ui, UiBuilder, Vec2, WidgetInfo, vec2,
 };
 use egui_plot::{
@@ -31,7 +31,7 @@ use crate::theme::Palette;
 /// What the keys do while the plot has focus.
 pub const KEYS: &str = "With the plot selected (Tab or a click): left and right arrows scroll or move the cursor, with Shift further, \
     up and down move the channel's zero, with Shift its scale, + − zoom, Home oldest, End live, P pause, C cursors, X other \
-    cursor, F fit, A whole history, M mark, T arm the trigger, N next trigger";
+    cursor, F fit, A whole history, M mark, T arm the trigger, N next trigger, and the keys for Copy put the picture on the clipboard";
 
 /// How near the pointer has to be to a handle.
 const REACH: f32 = 7.0;
@@ -546,6 +546,9 @@ fn keys_ui(ui: &Ui, graph: &mut LiveGraph, response: &Response) {
     for (key, times, action) in pressed(ui, graph.sheet().cursors.on) {
         let _ = key;
         (0..times).for_each(|_| graph.act(action));
+    }
+    if ui.input(|input| input.events.contains(&Event::Copy)) {
+        graph.act(GraphAction::CopyPicture);
     }
 }
 

@@ -331,6 +331,8 @@ fn more_ui(ui: &mut Ui, graph: &mut LiveGraph) {
         button_ui(ui, graph, "CSV", A::ExportCsv.title(), A::ExportCsv);
         button_ui(ui, graph, "PNG", A::ExportPng.title(), A::ExportPng);
         button_ui(ui, graph, "SVG", A::ExportSvg.title(), A::ExportSvg);
+        let hint = "Puts the picture on the clipboard, as the keys for Copy do in the plot";
+        button_ui(ui, graph, "Copy picture", hint, A::CopyPicture);
     });
     let hint = "The last hour of all channels, with commands, stops and other events, as a CSV that can be opened again; after a disconnect too";
     button_ui(ui, graph, "Save the whole history", hint, A::SaveHistory);
@@ -383,7 +385,8 @@ fn open_ui(ui: &mut Ui, graph: &mut LiveGraph) {
         ui.radio_value(&mut graph.files.open_as, OpenAs::Run, "As a run beneath, to compare");
     });
     ui.horizontal(|ui| {
-        if ui.button("Choose file…").clicked() {
+        let hint = "One recording, or several at once: the others are laid over the first";
+        if ui.button("Choose files…").on_hover_text(hint).clicked() {
             graph.files.choose_recording();
         }
         if ui.button("Open file").on_hover_text("Opens the file whose path stands beside").clicked() {

@@ -2,6 +2,7 @@
 
 use egui::{Context, Frame, Margin, Rect, ScrollArea, Ui, Window, vec2};
 
+use super::keys::escape_closes;
 use super::model::Model;
 use super::model::help::{Help, pages};
 use super::model::help_page::HelpPage;
@@ -18,7 +19,7 @@ pub fn help_ui(ctx: &Context, model: &mut Model, room: Rect) {
     let Some(page) = model.help.page else { return };
     let mut open = true;
     let size = vec2(780.0, 520.0).min(room.size() - vec2(24.0, 60.0));
-    Window::new("Brushwork help")
+    let shown = Window::new("Brushwork help")
         .open(&mut open)
         .collapsible(false)
         .default_size(size)
@@ -26,8 +27,7 @@ pub fn help_ui(ctx: &Context, model: &mut Model, room: Rect) {
         .min_size(vec2(420.0, 240.0))
         .constrain_to(room)
         .show(ctx, |ui| page_ui(ui, page, &mut model.help));
-    let escape = ctx.input(|input| input.key_pressed(egui::Key::Escape));
-    if !open || escape {
+    if !open || escape_closes(ctx, shown.as_ref()) {
         model.help = Help::default();
     }
 }

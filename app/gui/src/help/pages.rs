@@ -3,6 +3,7 @@
 use egui::{Label, RichText, Ui};
 
 use crate::actions::{self, Keys, Menu};
+use crate::keys::as_written;
 use crate::messages::NameMessage;
 use crate::widgets::label::fixed_label_ui;
 
@@ -88,8 +89,9 @@ pub fn shortcuts_ui(ui: &mut Ui, search: &str) {
         let rows: Vec<_> = rows.map(|(keys, action)| (keys.as_str(), action.title, action.help)).collect();
         table_ui(ui, menu.title(), &rows);
     }
-    let rows = OF_WIDGETS.into_iter().filter(|(keys, what, help)| fits(keys) || fits(what) || fits(help));
-    let rows: Vec<_> = rows.collect();
+    let rows = OF_WIDGETS.map(|(keys, what, help)| (as_written(ui.ctx(), keys), what, help));
+    let rows = rows.iter().filter(|(keys, what, help)| fits(keys) || fits(what) || fits(help));
+    let rows: Vec<_> = rows.map(|(keys, what, help)| (keys.as_str(), *what, *help)).collect();
     table_ui(ui, "In widgets", &rows);
 }
 
@@ -107,7 +109,7 @@ fn table_ui(ui: &mut Ui, title: &str, rows: &[(&str, &str, &str)]) {
         ui.horizontal_top(|ui| {
             fixed_label_ui(ui, keys, KEYS_WIDTH);
             fixed_label_ui(ui, what, WHAT_WIDTH);
-            ui.add(Label::new(RichText::new(*help).weak()).wrap());
+            ui.add(Label::new(RichText::new(as_written(ui.ctx(), help)).weak()).wrap());
         });
     }
 }

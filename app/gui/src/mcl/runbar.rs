@@ -8,12 +8,14 @@ use egui::{Label, ProgressBar, RichText, Ui};
 use crate::command::{Command, Commands};
 use crate::debugger::DebugAction;
 use crate::family::Ability;
+use crate::keys::as_written;
 use crate::model::messages::ScriptStateMessage;
 use crate::model::{Arming, IndicatorState, Model};
 use crate::screens::face;
 use crate::screens::stream::stream_ui;
 use crate::theme::Palette;
 use crate::widgets::arm_switch::arm_switch_ui;
+use crate::widgets::with_time_left;
 
 /// The switch with a line of what can happen, or how far a download is.
 pub fn runbar_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
@@ -36,7 +38,7 @@ pub fn runbar_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         if ui.button("Cancel download").clicked() {
             commands.push(Command::CancelDownload);
         }
-        ui.add(Label::new(text).truncate());
+        ui.add(Label::new(with_time_left(ui, "download", fraction, text)).truncate());
         return;
     }
     let palette = Palette::of(ui);
@@ -49,7 +51,7 @@ pub fn runbar_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
 fn board_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     if model.mcl.front().language() == Language::Mecc {
         let hint = "Puts the program in front into the simulated board's memory and starts it (Ctrl+F5)";
-        if ui.button("Run Program").on_hover_text(hint).clicked() {
+        if ui.button("Run Program").on_hover_text(as_written(ui.ctx(), hint)).clicked() {
             commands.push(Command::Debug(DebugAction::Run));
         }
     }

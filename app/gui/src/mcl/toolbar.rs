@@ -5,6 +5,7 @@ use egui::{Button, RichText, Role, Ui, WidgetInfo};
 
 use crate::actions;
 use crate::command::Commands;
+use crate::keys::as_written;
 use crate::language::said;
 use crate::mcl::messages::PanelMessage;
 use crate::model::Model;
@@ -61,7 +62,7 @@ fn button_ui(ui: &mut Ui, id: &str, reads: &str, model: &Model, commands: &mut C
     let keys = action.keys_text(ui.ctx());
     let keys = if keys.is_empty() { keys } else { format!(" ({keys})") };
     let reported = match &ready {
-        Ok(()) => format!("{title}{keys}\n{}", action.help(model)),
+        Ok(()) => format!("{title}{keys}\n{}", as_written(ui.ctx(), &action.help(model))),
         Err(why) => format!("{title}{keys}\n{why}"),
     };
     if response.clicked() {

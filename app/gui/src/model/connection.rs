@@ -108,9 +108,11 @@ pub struct Connection {
     /// The traffic panel of this link.
     pub traffic: Traffic,
     /// The screen whose channels the graph shows.
-    graph_of: Screen,
+    pub(super) graph_of: Screen,
     /// Which channels the graph showed when another screen that drives was left.
-    graph_choices: BTreeMap<&'static str, Vec<bool>>,
+    pub(super) graph_choices: BTreeMap<&'static str, Vec<bool>>,
+    /// The unit that is looked at as it was before, by its name.
+    pub viewed_as: Option<String>,
     pub world: WorldPanel,
     /// What is heard of the nodes of a CAN bus; kept when the link has ended.
     pub bus: Option<Monitor>,
@@ -218,6 +220,7 @@ impl Connection {
             traffic: Traffic::default(),
             graph_of: Screen::default(),
             graph_choices: BTreeMap::new(),
+            viewed_as: None,
             world: WorldPanel::default(),
             bus: None,
             lost: None,
@@ -629,7 +632,7 @@ impl Connection {
     }
 
     /// Shows the channels that were chosen for a screen, or those that its graph shows at first.
-    fn show_channels(&mut self, screen: Screen) {
+    pub(super) fn show_channels(&mut self, screen: Screen) {
         let at_start = self.family().first_channels(screen);
         let chosen = self.graph_choices.get(screen.title());
         for (index, channel) in self.graph.live.channels.iter_mut().enumerate() {

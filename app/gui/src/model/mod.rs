@@ -1,7 +1,10 @@
 //! The window's state as plain data. Screens read it and ask for changes; nothing here draws or waits.
 
 use crate::language::Language;
-use brushwork_link::device::ArmScope;
+use std::collections::BTreeMap;
+
+use brushwork_link::device::{ArmScope, Identity};
+use brushwork_link::settings::Profile;
 use egui::ThemePreference;
 
 use super::mcl::Editor;
@@ -47,6 +50,7 @@ pub mod settings;
 pub mod simulated;
 pub mod to_all;
 pub mod traffic;
+pub mod unit_view;
 pub mod velocity;
 pub mod watch;
 pub mod watched;
@@ -229,6 +233,20 @@ impl Model {
             std::mem::swap(&mut self.front, connection);
             self.front.graph_for(self.screen);
         }
+    }
+
+    /// The settings of the units of the open links that are of the family of the unit in front and not that unit, by what they are called.
+    pub fn other_units(&self) -> BTreeMap<String, Profile> {
+        let Some(identity) = self.front.link.identity() else { return BTreeMap::new() };
+        let is_other = |of: &Connection, unit: &Identity| {
+            unit.family == identity.family && (of.id() != self.front.id() || unit.address != identity.address)
+        };
+        let open = self.connections().filter(|connection| connection.is_connected());
+        let units = open.flat_map(|of| of.link.units.iter().map(move |unit| (of, unit)));
+        units
+            .filter(|(of, unit)| is_other(of, unit))
+            .filter_map(|(of, unit)| Some((to_all::unit_name(unit), of.settings.profile_at(unit)?)))
+            .collect()
     }
 
     /// The link at a place, open or not.

@@ -9,7 +9,7 @@ use brushwork_core::known_file::KnownFile;
 use brushwork_link::Message;
 use brushwork_link::settings::{ListedSetting, OpenedProfile, Profile, list};
 
-use crate::files::{FileAction, FileAnswer, FileDialog, FileKind};
+use crate::files::{FileAction, FileDialog, FileKind};
 
 /// Files that are remembered.
 const RECENT_KEPT: usize = 8;
@@ -51,7 +51,7 @@ impl OpenFiles {
         let mut endings: Vec<&str> = KnownFile::ALL.iter().flat_map(|kind| kind.endings()).copied().collect();
         endings.dedup();
         let kind = FileKind { title: "Files that can be opened".to_owned(), extension: endings.join(",") };
-        self.dialog = Some(FileDialog::ask(FileAction::Open, kind));
+        self.dialog = Some(FileDialog::ask(FileAction::OpenSeveral, kind));
     }
 
     /// Whether the desktop's own dialog is open.
@@ -59,13 +59,13 @@ impl OpenFiles {
         self.dialog.is_some()
     }
 
-    /// The file that was chosen in the dialog, once.
-    pub fn chosen(&mut self) -> Option<PathBuf> {
-        let answer = self.dialog.as_ref()?.answer();
-        if answer != FileAnswer::Waiting {
+    /// The files that were chosen in the dialog, once.
+    pub fn chosen(&mut self) -> Vec<PathBuf> {
+        let answer = self.dialog.as_ref().and_then(FileDialog::chosen);
+        if answer.is_some() {
             self.dialog = None;
         }
-        if let FileAnswer::Chosen(path) = answer { Some(path) } else { None }
+        answer.unwrap_or_default()
     }
 
     /// Looks at no file and no backups any more.

@@ -86,12 +86,16 @@ pub enum Wish {
     TurnBack(BTreeMap<ConnectionId, u8>),
 }
 
+/// "RoboClaw 2x7A at 0x81 on /dev/ttyUSB0".
+pub fn unit_name(identity: &Identity) -> String {
+    let (unit, place, port) = (identity.title().to_owned(), identity.place(), identity.port.clone());
+    Message::from(ToAllMessage::Unit { unit, place, port }).to_string()
+}
+
 impl Target {
     /// "RoboClaw 2x7A at 0x81 on /dev/ttyUSB0".
     pub fn name(&self) -> String {
-        let Identity { port, .. } = &self.identity;
-        let (unit, place) = (self.identity.title().to_owned(), self.identity.place());
-        Message::from(ToAllMessage::Unit { unit, place, port: port.clone() }).to_string()
+        unit_name(&self.identity)
     }
 
     fn options(&self, connection: &Connection) -> WriteOptions {

@@ -89,32 +89,35 @@ fn download(path: &Path, content: &[u8]) -> Result<(), JsValue> {
     Url::revoke_object_url(&url)
 }
 
-/// Lets a file be chosen; it stands among the downloads then, and its path is sent.
-pub fn choose(extensions: &str, chosen: Sender<Option<PathBuf>>) {
+/// Lets a file be chosen, or several; they stand among the downloads then, and their paths are sent.
+pub fn choose(extensions: &str, several: bool, chosen: Sender<Vec<PathBuf>>) {
     // Without a dialog the sender is dropped, which reads as cancelled.
-    let _ = ask(extensions, chosen);
+    let _ = ask(extensions, several, chosen);
 }
 
-fn ask(extensions: &str, chosen: Sender<Option<PathBuf>>) -> Result<(), JsValue> {
+fn ask(extensions: &str, several: bool, chosen: Sender<Vec<PathBuf>>) -> Result<(), JsValue> {
     let nothing = || JsValue::UNDEFINED;
     let document = web_sys::window().and_then(|window| window.document()).ok_or_else(nothing)?;
     let input = document.create_element("input")?.dyn_into::<HtmlInputElement>()?;
     input.set_type("file");
     let accepted: Vec<String> = extensions.split(',').map(|extension| format!(".{extension}")).collect();
     input.set_accept(&accepted.join(","));
+    input.set_multiple(several);
     let asked = Rc::new(input.clone());
     let of_change = chosen.clone();
     let changed = Closure::once_into_js(move || {
-        let file = asked.files().and_then(|files| files.get(0));
+        let listed = asked.files();
+        let files: Vec<File> =
+            listed.iter().flat_map(|list| (0..list.length()).filter_map(|index| list.get(index))).collect();
         wasm_bindgen_futures::spawn_local(async move {
-            let path = match file {
-                Some(file) => bring(&file).await,
-                None => None,
-            };
-            answer(&of_change, path);
+            let mut paths = Vec::new();
+            for file in &files {
+                paths.extend(bring(file).await);
+            }
+            answer(&of_change, paths);
         });
     });
-    let cancelled = Closure::once_into_js(move || answer(&chosen, None));
+    let cancelled = Closure::once_into_js(move || answer(&chosen, Vec::new()));
     input.set_onchange(Some(changed.unchecked_ref()));
     input.set_oncancel(Some(cancelled.unchecked_ref()));
     input.click();
@@ -128,9 +131,9 @@ async fn bring(file: &File) -> Option<PathBuf> {
     Some(path)
 }
 
-fn answer(chosen: &Sender<Option<PathBuf>>, path: Option<PathBuf>) {
+fn answer(chosen: &Sender<Vec<PathBuf>>, paths: Vec<PathBuf>) {
     // The window may have gone on without the answer.
-    let _ = chosen.try_send(path);
+    let _ = chosen.try_send(paths);
     WINDOW.with(|window| {
         if let Some(ctx) = &*window.borrow() {
             ctx.request_repaint();

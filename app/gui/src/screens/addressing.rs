@@ -19,7 +19,9 @@ const STEP_SIZE: egui::Vec2 = vec2(140.0, 30.0);
 pub fn addressing_ui(ctx: &Context, model: &mut Model, commands: &mut Commands, room: Rect) {
     if model.addressing.open {
         let size = vec2(560.0, 460.0);
-        model.addressing.open = dialog_ui(ctx, "Give boards their addresses", (room, size), |ui| {
+        let title =
+            ("Give boards their addresses", model.front.is_assisted || model.front.errand.is_running());
+        model.addressing.open = dialog_ui(ctx, title, (room, size), |ui| {
             contents_ui(ui, model, commands);
         });
     }

@@ -9,6 +9,7 @@ use brushwork_core::session::bus::BusList;
 use egui::{Button, ComboBox, Context, DragValue, Grid, Rect, RichText, Ui, Window, vec2};
 
 use crate::command::{Command, Commands};
+use crate::keys::escape_closes;
 use crate::messages::ButtonMessage;
 use crate::model::Model;
 use crate::model::canopen::ADAPTER_BAUD_RATES;
@@ -27,7 +28,7 @@ pub fn canopen_ui(ctx: &Context, model: &mut Model, commands: &mut Commands, roo
     }
     let mut open = true;
     let size = vec2(440.0, 250.0).min(room.size() - vec2(24.0, 60.0));
-    Window::new("CANopen bus")
+    let shown = Window::new("CANopen bus")
         .open(&mut open)
         .collapsible(false)
         .resizable(false)
@@ -35,7 +36,7 @@ pub fn canopen_ui(ctx: &Context, model: &mut Model, commands: &mut Commands, roo
         .default_width(size.x)
         .constrain_to(room)
         .show(ctx, |ui| contents_ui(ui, model, commands));
-    if !open || ctx.input(|input| input.key_pressed(egui::Key::Escape)) {
+    if !open || escape_closes(ctx, shown.as_ref()) {
         model.canopen.open = false;
     }
 }

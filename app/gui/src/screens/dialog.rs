@@ -3,6 +3,7 @@
 use egui::{Context, Label, Rect, RichText, ScrollArea, Ui, Vec2, Window, vec2};
 
 use crate::focus::{Region, region_ui};
+use crate::keys::escape_closes;
 use crate::model::Gravity;
 use crate::theme::Palette;
 
@@ -11,16 +12,16 @@ const MARGIN: Vec2 = vec2(24.0, 60.0);
 /// Less than this shows nothing of use.
 const LEAST: Vec2 = vec2(420.0, 260.0);
 
-/// Draws the window within `room`; whether it is still open.
+/// Draws the window within `room`; whether it is still open. Esc closes it but for the time that its work goes on.
 pub fn dialog_ui(
     ctx: &Context,
-    title: &str,
+    (title, is_running): (&str, bool),
     (room, size): (Rect, Vec2),
     contents_ui: impl FnOnce(&mut Ui),
 ) -> bool {
     let mut open = true;
     let size = size.min(room.size() - MARGIN);
-    Window::new(title)
+    let shown = Window::new(title)
         .open(&mut open)
         .collapsible(false)
         .default_size(size)
@@ -36,7 +37,7 @@ pub fn dialog_ui(
                 contents_ui(ui);
             });
         });
-    open
+    open && (is_running || !escape_closes(ctx, shown.as_ref()))
 }
 
 /// What the window is for.

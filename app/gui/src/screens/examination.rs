@@ -10,11 +10,12 @@ use egui::{
 };
 
 use crate::command::{Command, Commands};
+use crate::keys::escape_closes;
 use crate::model::examination::{ExaminationAction, ExaminationPanel};
 use crate::model::{Gravity, Model};
 use crate::screens::messages::ScreenMessage;
 use crate::theme::Palette;
-use crate::widgets::{choice_ui, heading_ui, text_field_ui};
+use crate::widgets::{choice_ui, heading_ui, text_field_ui, with_time_left};
 use brushwork_core::messages::ExamineMessage;
 
 /// Lines of the report that are shown at once, at least.
@@ -27,7 +28,7 @@ pub fn examination_ui(ctx: &Context, model: &mut Model, commands: &mut Commands,
     }
     let mut open = true;
     let size = vec2(680.0, 620.0).min(room.size() - vec2(24.0, 60.0));
-    Window::new("Examine this controller")
+    let shown = Window::new("Examine this controller")
         .open(&mut open)
         .collapsible(false)
         .default_size(size)
@@ -38,7 +39,8 @@ pub fn examination_ui(ctx: &Context, model: &mut Model, commands: &mut Commands,
             ScrollArea::vertical().auto_shrink([false; 2]).show(ui, |ui| contents_ui(ui, model, commands));
         });
     // The window can be put away while the examination goes on.
-    model.front.examination.open = open;
+    let closes = escape_closes(ctx, shown.as_ref()) && !model.front.examination.is_running();
+    model.front.examination.open = open && !closes;
 }
 
 fn contents_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
@@ -139,7 +141,7 @@ fn running_ui(ui: &mut Ui, panel: &ExaminationPanel, commands: &mut Commands) {
     let Some((number, of, title, text, share)) = panel.progress() else { return };
     heading_ui(ui, &ScreenMessage::StepOf { number, of, title }.to_string());
     ui.add(ProgressBar::new(share).show_percentage().desired_height(18.0));
-    ui.label(capital(&text));
+    ui.label(with_time_left(ui, "examination", share, &capital(&text)));
     if ui.button("Cancel").on_hover_text("What was changed is put back").clicked() {
         commands.push(Command::Examination(ExaminationAction::Cancel));
     }

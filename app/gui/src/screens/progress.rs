@@ -3,6 +3,7 @@
 use egui::{Label, ProgressBar, Ui};
 
 use crate::command::{Command, Commands, GuidedAction};
+use crate::widgets::with_time_left;
 
 /// How far a job is, with the button that ends it.
 pub fn progress_ui(ui: &mut Ui, progress: Option<(f32, &str)>, commands: &mut Commands) {
@@ -11,5 +12,5 @@ pub fn progress_ui(ui: &mut Ui, progress: Option<(f32, &str)>, commands: &mut Co
     if ui.button("Cancel").on_hover_text("Stops the motors").clicked() {
         commands.push(Command::Guided(GuidedAction::Cancel));
     }
-    ui.add(Label::new(text).truncate());
+    ui.add(Label::new(with_time_left(ui, "guided", fraction, text)).truncate());
 }

@@ -18,7 +18,8 @@ use crate::widgets::{choice_ui, heading_ui, text_field_ui};
 pub fn raw_ui(ctx: &Context, model: &mut Model, commands: &mut Commands, room: Rect) {
     if model.front.raw.open {
         let size = vec2(600.0, 520.0);
-        model.front.raw.open = dialog_ui(ctx, "Raw settings, at your own risk", (room, size), |ui| {
+        let title = ("Raw settings, at your own risk", model.front.errand.is_running());
+        model.front.raw.open = dialog_ui(ctx, title, (room, size), |ui| {
             contents_ui(ui, &mut model.front, commands);
         });
     }

@@ -10,6 +10,7 @@ use crate::command::{Command, Commands};
 use crate::messages::ToAllMessage;
 use crate::model::to_all::{State, Target, ToAll, ToAllAction};
 use crate::model::{Gravity, IndicatorState, Model};
+use crate::widgets::with_time_left;
 
 /// Draws the window, if it is open, within `room`.
 pub fn to_all_ui(ctx: &Context, model: &mut Model, commands: &mut Commands, room: Rect) {
@@ -18,7 +19,8 @@ pub fn to_all_ui(ctx: &Context, model: &mut Model, commands: &mut Commands, room
         let of = model.to_all.job().and_then(|(id, _)| model.connection(id));
         let progress = of.and_then(|connection| connection.errand.progress());
         let progress = progress.map(|(share, text)| (share, capital(text)));
-        let open = dialog_ui(ctx, "One profile for all units", (room, size), |ui| {
+        let title = ("One profile for all units", model.to_all.is_running());
+        let open = dialog_ui(ctx, title, (room, size), |ui| {
             contents_ui(ui, &mut model.to_all, progress.as_ref(), commands);
         });
         // What goes on goes on; the window can be opened again.
@@ -84,6 +86,7 @@ fn target_ui(ui: &mut Ui, target: &mut Target, progress: Progress<'_>, is_runnin
         ui.add_enabled(!is_running, Checkbox::new(&mut target.chosen, name));
     });
     if let Some((share, text)) = progress {
+        let text = with_time_left(ui, "to all units", *share, text);
         ui.add(ProgressBar::new(*share).desired_height(14.0).text(text));
     }
     ui.indent("unit", |ui| match &target.state {

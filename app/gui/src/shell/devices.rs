@@ -333,7 +333,7 @@ fn address_ui(ui: &mut Ui, shown: Addresses, family: &dyn Family) -> Addresses {
     };
     let mut chosen = shown;
     let each = (0..=u8::MAX).filter(|number| family.family().has_address(*number));
-    let list = ComboBox::from_id_salt("address").width(72.0);
+    let list = ComboBox::from_id_salt("address").width(72.0).truncate();
     let each = std::iter::once(Addresses::Scan).chain(each.map(Addresses::Only));
     let (all, cost) = (family.family().addresses(), family.scan_cost());
     let help = said(&ShellMessage::WhichAddresses { all, cost });

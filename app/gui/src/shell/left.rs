@@ -5,6 +5,7 @@ use egui::{Align, Button, Label, Layout, Panel, RichText, Role, ScrollArea, Ui, 
 use super::devices::devices_ui;
 use crate::command::{Command, Commands};
 use crate::focus::{Region, region_ui};
+use crate::keys::as_written;
 use crate::language::word;
 use crate::model::{Connection, Model};
 use crate::theme::Palette;
@@ -60,7 +61,8 @@ fn world_ui(ui: &mut Ui, open: &mut bool) {
     heading_ui(ui, &word("bar", "Simulator"));
     ui.with_layout(Layout::top_down_justified(Align::Min), |ui| {
         let title = word("bar", "Simulated world");
-        let button = Button::selectable(*open, &title).right_text(RichText::new("Ctrl+B").small());
+        let button = Button::selectable(*open, &title)
+            .right_text(RichText::new(as_written(ui.ctx(), "Ctrl+B")).small());
         let note = word("bar", "Load, batteries, switches, inputs and faults of the simulated controller");
         let response = ui.add(button);
         response.widget_info(|| WidgetInfo::selected(Role::Button, true, *open, &title));
@@ -77,7 +79,8 @@ fn screens_ui(ui: &mut Ui, model: &Model, commands: &mut Commands) {
     ui.with_layout(Layout::top_down_justified(Align::Min), |ui| {
         for screen in model.front.screens() {
             let (title, is_current) = (word("screen", family.title(screen)), current == screen);
-            let shortcut = RichText::new(format!("Ctrl+{}", screen as usize + 1)).small();
+            let keys = format!("Ctrl+{}", screen as usize + 1);
+            let shortcut = RichText::new(as_written(ui.ctx(), &keys)).small();
             let response = ui.add(Button::selectable(is_current, &title).right_text(shortcut));
             response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_current, &title));
             if response.clicked() {

@@ -4,6 +4,7 @@ use egui::{Button, MenuBar, Response, Role, ScrollArea, Ui, WidgetInfo};
 
 use crate::actions::{self, Action, Menu};
 use crate::command::Commands;
+use crate::keys::as_written;
 use crate::language::word;
 use crate::model::Model;
 
@@ -50,7 +51,7 @@ fn item_ui(ui: &mut Ui, action: &Action, model: &Model) -> Response {
         Some(_) => WidgetInfo::selected(Role::MenuItemCheckBox, ready.is_ok(), is_on, &title),
         None => WidgetInfo::labeled(Role::MenuItem, ready.is_ok(), &title),
     });
-    let reported = ready.err().unwrap_or_else(|| action.help(model).into());
+    let reported = ready.err().unwrap_or_else(|| as_written(ui.ctx(), &action.help(model)).into());
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_description(&*reported));
     response.on_hover_text(&*reported).on_disabled_hover_text(&*reported)
 }

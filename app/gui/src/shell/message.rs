@@ -6,7 +6,7 @@ use egui::{Align, Label, Layout, RichText, Role, Ui, WidgetInfo, vec2};
 use super::marks;
 use crate::command::{Command, Commands};
 use crate::focus::{Region, region_ui};
-use crate::language::{said_message, word};
+use crate::language::{is_translated, said_message, word};
 use crate::model::message::Message;
 use crate::model::{Gravity, IndicatorState, Model};
 
@@ -46,7 +46,8 @@ fn shown_ui(ui: &mut Ui, message: &Message, commands: &mut Commands) {
         // Two lines fit; what is longer is shown in full by a pointer over it.
         let words = said_message(&message.text);
         let text = ui.add(Label::new(&words).wrap()).on_hover_text(&words);
-        let spoken = format!("{}: {words}", gravity_word(message.gravity));
+        let gravity = gravity_word(message.gravity, is_translated(&message.text));
+        let spoken = format!("{gravity}: {words}");
         text.widget_info(|| WidgetInfo::labeled(Role::Alert, true, &spoken));
         let live = match message.gravity {
             Gravity::Note => Live::Polite,
@@ -70,10 +71,12 @@ fn quiet_ui(ui: &mut Ui, model: &Model) {
     ui.add(Label::new(RichText::new(text).weak()).wrap());
 }
 
-fn gravity_word(gravity: Gravity) -> String {
-    match gravity {
-        Gravity::Note => word("gravity", "Note"),
-        Gravity::Warning => word("gravity", "Warning"),
-        Gravity::Error => word("gravity", "Error"),
-    }
+/// Before a message that has no translation it is English too.
+fn gravity_word(gravity: Gravity, is_translated: bool) -> String {
+    let (english, said) = match gravity {
+        Gravity::Note => ("Note", word("gravity", "Note")),
+        Gravity::Warning => ("Warning", word("gravity", "Warning")),
+        Gravity::Error => ("Error", word("gravity", "Error")),
+    };
+    if is_translated { said } else { english.to_owned() }
 }

@@ -21,6 +21,8 @@ const FROM_TOP: f32 = 60.0;
 /// One row of the palette.
 struct Row {
     name: String,
+    /// Its name beside why it cannot be done, which is told in English.
+    refused: String,
     keys: String,
     ready: Ready,
     command: Command,
@@ -59,7 +61,7 @@ fn run(row: &Row, model: &mut Model, commands: &mut Commands) {
         Ok(()) => commands.push(row.command.clone()),
         Err(why) => model
             .messages
-            .warn(WindowStatusMessage::NotNow { act: row.name.to_string(), why: why.to_string() }),
+            .warn(WindowStatusMessage::NotNow { act: row.refused.clone(), why: why.to_string() }),
     }
 }
 
@@ -71,6 +73,7 @@ fn rows(ctx: &Context, model: &Model) -> Vec<Row> {
             word("menu", action.place.menu.title()),
             action.said(model).trim_end_matches('…')
         ),
+        refused: format!("{}: {}", action.place.menu.title(), action.title.trim_end_matches('…')),
         keys: action.keys_text(ctx),
         ready: (action.ready)(model),
         command: (action.command)(model),
@@ -81,10 +84,11 @@ fn rows(ctx: &Context, model: &Model) -> Vec<Row> {
             said(&ShellMessage::BringToFront { target: target.to_string() }),
             Command::Front(connection.id()),
         );
-        Some(Row { name, keys: String::new(), ready: Ok(()), command })
+        Some(Row { refused: name.clone(), name, keys: String::new(), ready: Ok(()), command })
     };
     let of_recent = |target: &String| Row {
         name: said(&ShellMessage::ConnectTo { target: target.clone() }),
+        refused: target.clone(),
         keys: String::new(),
         ready: Ok(()),
         command: Command::ConnectTo(target.clone()),
@@ -102,7 +106,12 @@ fn contents_ui(ui: &mut Ui, palette: &mut Palette, rows: &[Row]) -> Option<Done>
         let mut pressed = |key| input.consume_key(Modifiers::NONE, key);
         (pressed(Key::ArrowUp), pressed(Key::ArrowDown), pressed(Key::Enter), input.key_pressed(Key::Escape))
     });
-    let field = text_field_ui(ui, &mut palette.query, "Command", "Type what you want to do");
+    let field = text_field_ui(
+        ui,
+        &mut palette.query,
+        &word("bar", "Command"),
+        &word("bar", "Type what you want to do"),
+    );
     if palette.is_new || enter {
         field.request_focus();
     }
@@ -130,7 +139,7 @@ fn list_ui(ui: &mut Ui, rows: &[Row], found: &[usize], chosen: usize, moved: boo
     ScrollArea::vertical().max_height(LIST_HEIGHT).min_scrolled_height(LIST_HEIGHT).show(ui, |ui| {
         ui.set_min_width(WIDTH - 16.0);
         if found.is_empty() {
-            ui.label("Nothing is called that. Try fewer letters.");
+            ui.label(word("bar", "Nothing is called that. Try fewer letters."));
         }
         for (place, index) in found.iter().enumerate() {
             let row = &rows[*index];

@@ -4,6 +4,7 @@
 use egui::{Key, Ui};
 
 use super::command::Commands;
+use super::keys::as_written;
 use super::model::Model;
 use super::model::traffic::Tab;
 use super::screens::face;
@@ -25,7 +26,8 @@ pub fn traffic_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
             }
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if ui.button("Close").on_hover_text("Hides the panel and ends the recording (Ctrl+T)").clicked() {
+            let hint = as_written(ui.ctx(), "Hides the panel and ends the recording (Ctrl+T)");
+            if ui.button("Close").on_hover_text(hint).clicked() {
                 model.front.traffic.open = false;
             }
             if tab == Tab::Log {

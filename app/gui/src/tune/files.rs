@@ -62,7 +62,7 @@ fn with_extension(path: &str) -> PathBuf {
 }
 
 fn ask(tuning: &mut Tuning, action: FileAction) {
-    let saves = action != FileAction::Open;
+    let saves = matches!(action, FileAction::Save { .. });
     let kind = FileKind { title: "Tuning report".to_owned(), extension: "json".to_owned() };
     tuning.dialog = Some(Asked { dialog: FileDialog::ask(action, kind), saves });
 }

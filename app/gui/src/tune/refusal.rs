@@ -136,7 +136,7 @@ fn steps(cause: Cause) -> &'static [&'static str] {
             "Look for backlash in gears and for soft couplings: they oscillate with stiff gains.",
         ],
         Cause::Refused => &[
-            "See the traffic panel (Ctrl+T) for the command that was refused.",
+            "See the traffic panel for the command that was refused.",
             "Read the settings again and check the firmware's version.",
         ],
         _ => &[],

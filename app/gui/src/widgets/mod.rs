@@ -13,6 +13,7 @@ pub mod setpoint;
 pub mod steps;
 pub mod stop;
 pub mod text_field;
+pub mod time_left;
 
 pub use choice::choice_ui;
 pub use elided::elided;
@@ -22,6 +23,7 @@ pub use numeric::Numeric;
 pub use readout::{NO_VALUE, Readout};
 pub use setpoint::Setpoint;
 pub use text_field::text_field_ui;
+pub use time_left::with_time_left;
 
 pub use arm_switch::arm_switch_ui;
 pub use text_field::keep_space;

@@ -2,7 +2,7 @@
 
 use egui::{Align2, FontId, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
 
-use crate::keys::stop_words;
+use crate::keys::said_stop_words;
 use crate::language::{said, word};
 use crate::messages::ButtonMessage;
 use crate::theme::Palette;
@@ -27,8 +27,8 @@ fn sized_ui(ui: &mut Ui, connected: bool, height: f32) -> Response {
     let palette = Palette::of(ui);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, word("bar", "Stop All")));
-    let keys = stop_words(ui.ctx());
-    ui.ctx().accesskit_node_builder(response.id, |node| node.set_keyboard_shortcut(keys));
+    let keys = said_stop_words(ui.ctx());
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_keyboard_shortcut(keys.clone()));
     let (fill, text) =
         if connected { (palette.stop, palette.on_stop) } else { (palette.raised, palette.weak_text) };
     let fill = if response.is_pointer_button_down_on() { fill.gamma_multiply(0.8) } else { fill };

@@ -191,7 +191,7 @@ fn what_is_refused_is_a_sentence_and_so_are_too_many() {
     assert!(bench.model().files.recent.is_empty(), "what was refused was not opened");
     let many = [other.as_path(); 10];
     drop_on(&mut bench, &many);
-    assert!(last_said(&mut bench).starts_with("10 files were dropped"), "{:?}", bench.said());
+    assert!(last_said(&mut bench).starts_with("10 files at once"), "{:?}", bench.said());
 }
 
 #[test]

@@ -24,13 +24,39 @@ use crate::support::bench::Bench;
 const THEMES: [&str; 5] =
     ["ShellMessage", "BarMarkMessage", "DeviceRowMessage", "DeviceStateMessage", "LinkStatusMessage"];
 /// Members of other themes that it shows.
-const MEMBERS: [&str; 14] = [
+const MEMBERS: [&str; 40] = [
     "ButtonMessage.ConnectTo",
     "ButtonMessage.Copies",
     "ButtonMessage.Open",
     "ButtonMessage.Run",
     "ButtonMessage.StopAll",
     "PanelMessage.Toolbar",
+    "GraphMessage.CopiedPicture",
+    "GraphMessage.LeftOut",
+    "GraphMessage.NoSample",
+    "GraphMessage.NoThread",
+    "GraphMessage.NothingKept",
+    "GraphMessage.Recorded",
+    "GraphMessage.RecordedInPart",
+    "GraphMessage.RecordedUntilLost",
+    "GraphMessage.RecordedUntilOther",
+    "GraphMessage.Wrote",
+    "OpenFileMessage.NoDialog",
+    "OpenFileMessage.TooMany",
+    "WindowStatusMessage.ArmEditorFirst",
+    "WindowStatusMessage.AssistantWorks",
+    "WindowStatusMessage.Copied",
+    "WindowStatusMessage.DownloadRuns",
+    "WindowStatusMessage.GainsBack",
+    "WindowStatusMessage.LibraryRunsAgain",
+    "WindowStatusMessage.LinkEnded",
+    "WindowStatusMessage.NoLinkThread",
+    "WindowStatusMessage.NoNameAtCaret",
+    "WindowStatusMessage.Replaced",
+    "WindowStatusMessage.ReportIsIn",
+    "WindowStatusMessage.RunHoldsSettings",
+    "WindowStatusMessage.WaitsForRun",
+    "WindowStatusMessage.WindingPutBack",
     "WindowStatusMessage.Disconnected",
     "WindowStatusMessage.GaveUp",
     "WindowStatusMessage.TunedNotApplied",
@@ -39,6 +65,17 @@ const MEMBERS: [&str; 14] = [
     "OutcomeMessage.Written",
     "PathMessage.BackupMade",
     "SaveMessage.Verified",
+];
+/// Members of these themes that stay English: their values are sentences without a translation, and no line is half German.
+const ENGLISH: [&str; 8] = [
+    "ShellMessage.NewestEvent",
+    "ShellMessage.WhichAddresses",
+    "ShellMessage.Searching",
+    "ShellMessage.Searched",
+    "LinkStatusMessage.LostArmed",
+    "LinkStatusMessage.LostArmedForever",
+    "LinkStatusMessage.LostWaiting",
+    "LinkStatusMessage.StoppedFromOutside",
 ];
 /// A table that the message line shows too, beside those of the window.
 const OF_THE_LINK: &str = include_str!("../../../../device/link/src/messages.rs");
@@ -112,7 +149,8 @@ fn wanted_messages(source: &str, wanted: &mut BTreeMap<String, BTreeSet<String>>
             theme = name.trim_end_matches(" {");
         } else if let Some((head, words)) = line.strip_suffix("\",").and_then(|line| line.split_once(" \"")) {
             let key = format!("{theme}.{}", head.split_whitespace().next().expect("a member has a name"));
-            if THEMES.contains(&theme) || MEMBERS.contains(&key.as_str()) {
+            let is_said = THEMES.contains(&theme) || MEMBERS.contains(&key.as_str());
+            if is_said && !ENGLISH.contains(&key.as_str()) {
                 // A value may have its digits behind its name.
                 let name = |rest: &str| Some(rest.split(['}', ':']).next()?.to_owned());
                 let values = words.split('{').skip(1).filter_map(name);
@@ -233,4 +271,46 @@ fn device_list_and_message_line_are_german_too_with_figures_as_germans_write_the
     bench.pass_ms(1000);
     assert!(bench.sees_part("Hinweis: Getrennt."));
     assert!(bench.said().contains(&"Disconnected.".to_owned()), "what is kept is English");
+}
+
+/// A value of a translated message that is itself a message without a translation would be the other half of a line.
+#[test]
+fn no_line_is_half_german() {
+    let mut bench = Bench::new();
+    bench.press("View");
+    bench.press("Deutsch");
+    bench.pass_ms(200);
+    let stop = bench.harness.get_by_role_and_label(Role::Button, "Alles anhalten");
+    assert_eq!(stop.accesskit_node().data().keyboard_shortcut(), Some("Leertaste oder Esc"));
+    // Why something cannot be done is told in English, and so is what it is called there.
+    bench.key_with(egui::Modifiers { shift: true, ..egui::Modifiers::COMMAND }, egui::Key::P);
+    bench.pass_ms(200);
+    bench.harness.get_by_role_and_label(Role::TextInput, "Befehl").type_text("Encoder M2 nullen");
+    bench.pass_ms(200);
+    bench.key(egui::Key::Enter);
+    bench.pass_ms(300);
+    assert!(
+        bench.sees("Warning: Device: Zero Encoder M2: No controller is connected."),
+        "{:?}",
+        bench.said()
+    );
+    // A lost link is told in one language from end to end.
+    bench.press("Verbinden");
+    bench.pass_ms(1500);
+    bench.act(&brushwork_plant::world::WorldAction::Unplug { unplugged: true });
+    bench.pass_ms(3000);
+    let line = bench.said().first().cloned().unwrap_or_default();
+    assert!(bench.sees(&format!("Error: {line}")), "{line}");
+    // The list of addresses is no wider than in English.
+    bench.press("Ansicht");
+    bench.press("English");
+    bench.pass_ms(200);
+    let width =
+        |bench: &Bench| bench.harness.get_by_role_and_label(Role::Button, "Device Status").rect().width();
+    let english = width(&bench);
+    bench.press("View");
+    bench.press("Deutsch");
+    bench.pass_ms(300);
+    let german = bench.harness.get_by_role_and_label(Role::Button, "Gerätestatus").rect().width();
+    assert!((german - english).abs() < 1.0, "{german} and {english} points");
 }

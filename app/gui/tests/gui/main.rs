@@ -13,6 +13,7 @@ mod general;
 mod generator;
 mod graph;
 mod graph_place;
+mod habits;
 mod jobs;
 mod kept;
 mod keyboard;

@@ -3,23 +3,30 @@
 use crate::messages::{GraphMessage, WindowStatusMessage};
 use std::time::{Duration, SystemTime};
 
-use brushwork_link::clock;
 use brushwork_link::device::Sample;
-use crossbeam_channel::TryRecvError;
-use egui::Rect;
+use brushwork_link::{clock, work};
+use crossbeam_channel::{TryRecvError, bounded};
+use egui::{Color32, ColorImage, Rect};
 
 use super::{Asked, Export, LEAST_PICTURE, OpenAs, Recording, Said, Stopping, size_text};
-use crate::files::FileAnswer;
 use crate::graph::live::Opened;
 use crate::graph::picture::draw::Scene;
 use crate::graph::picture::frame::Frame;
-use crate::graph::picture::{legend, png, svg};
+use crate::graph::picture::{Picture, legend, png, svg};
 use crate::graph::runs::Run;
 use crate::graph::{LiveGraph, Mark, Sheet, load};
 use crate::model::message::Gravity;
 use crate::theme::Palette;
 use brushwork_core::recording::recorder::Recorder;
 use brushwork_core::recording::{Form, Head, Reading, Record};
+
+/// What is in view, drawn apart from the window.
+struct Drawn {
+    picture: Picture,
+    whole: Rect,
+    background: Color32,
+    title: String,
+}
 
 impl LiveGraph {
     /// Looks after files: once per frame. `now` is the link's time, while there is a link.
@@ -112,18 +119,13 @@ impl LiveGraph {
     fn poll_dialog(&mut self) {
         let Some((asked, dialog)) = &self.files.dialog else { return };
         let asked = *asked;
-        match dialog.answer() {
-            FileAnswer::Waiting => return,
-            FileAnswer::None => {}
-            FileAnswer::Chosen(path) if asked == Asked::Folder => {
-                self.files.folder = path.display().to_string();
-            }
-            FileAnswer::Chosen(path) => {
-                self.files.open_path = path.display().to_string();
-                self.files.open(&path);
-            }
-        }
+        let Some(chosen) = dialog.chosen() else { return };
         self.files.dialog = None;
+        match (asked, chosen.first()) {
+            (Asked::Folder, Some(path)) => self.files.folder = path.display().to_string(),
+            (Asked::Open, Some(_)) => self.files.open_together(&chosen),
+            (Asked::Folder | Asked::Open, None) => {}
+        }
     }
 
     /// The recording that is looked at goes; the live graph was sampled all the time.
@@ -242,13 +244,37 @@ impl LiveGraph {
                     load::csv_of(&track, &shown, zero_s, began).map_err(|error| error.to_string())
                 })
             }
-            Export::Png | Export::Svg => self.picture(what),
+            Export::Png => {
+                let Drawn { picture, whole, background, .. } = self.picture();
+                Box::new(move || png::png(&picture, whole, background).map_err(|error| error.to_string()))
+            }
+            Export::Svg => {
+                let Drawn { picture, whole, background, title } = self.picture();
+                Box::new(move || Ok(svg::svg(&picture, whole, background, &title).into_bytes()))
+            }
         };
         self.files.write(path, make);
     }
 
+    /// Draws what is in view for the clipboard, as it is written to a file.
+    pub fn copy_picture(&mut self) {
+        let Drawn { picture, whole, background, .. } = self.picture();
+        let (sender, receiver) = bounded(1);
+        let draw = move || {
+            let (size, rgba) = png::pixels(&picture, whole, background);
+            // The window may be gone.
+            let _ = sender.send(ColorImage::from_rgba_unmultiplied(size, &rgba));
+        };
+        match work::spawn("copy picture", draw) {
+            Ok(()) => self.files.copying = Some(receiver),
+            Err(error) => {
+                self.files.say(Gravity::Error, WindowStatusMessage::NotExported { error: error.to_string() });
+            }
+        }
+    }
+
     /// The picture with a head and a legend, ready to be drawn elsewhere.
-    fn picture(&self, what: Export) -> Box<dyn FnOnce() -> Result<Vec<u8>, String> + Send> {
+    fn picture(&self) -> Drawn {
         let palette: &'static Palette =
             Palette::of_theme(if self.files.dark { egui::Theme::Dark } else { egui::Theme::Light });
         let sheet = self.sheet();
@@ -274,10 +300,6 @@ impl LiveGraph {
         let mut picture = scene.picture();
         let whole = Rect::from_min_max(egui::Pos2::ZERO, plot.max);
         picture.push(legend::layer(&head, palette, whole));
-        let title = head.title.clone();
-        Box::new(move || match what {
-            Export::Png => png::png(&picture, whole, palette.panel).map_err(|error| error.to_string()),
-            Export::Csv | Export::Svg => Ok(svg::svg(&picture, whole, palette.panel, &title).into_bytes()),
-        })
+        Drawn { picture, whole, background: palette.panel, title: head.title.clone() }
     }
 }

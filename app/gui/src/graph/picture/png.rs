@@ -15,6 +15,15 @@ const PIXELS_PER_POINT: f32 = 2.0;
 /// # Errors
 /// The picture is too large to be encoded.
 pub fn png(picture: &Picture, size: Rect, background: Color32) -> Result<Vec<u8>, ImageError> {
+    let ([width, height], rgba) = pixels(picture, size, background);
+    let mut file = Vec::new();
+    let encoder = image::codecs::png::PngEncoder::new(&mut file);
+    encoder.write_image(&rgba, width as u32, height as u32, ExtendedColorType::Rgba8)?;
+    Ok(file)
+}
+
+/// Width and height, and each pixel's red, green, blue and opacity. `size` begins at 0, 0.
+pub fn pixels(picture: &Picture, size: Rect, background: Color32) -> ([usize; 2], Vec<u8>) {
     let ctx = Context::default();
     theme::install(&ctx);
     ctx.set_pixels_per_point(PIXELS_PER_POINT);
@@ -34,10 +43,7 @@ pub fn png(picture: &Picture, size: Rect, background: Color32) -> Result<Vec<u8>
     let pixels =
         [size.width(), size.height()].map(|points| (points * PIXELS_PER_POINT).round().max(1.0) as usize);
     let rgba = painter.paint(pixels, PIXELS_PER_POINT, background, &primitives);
-    let mut file = Vec::new();
-    let encoder = image::codecs::png::PngEncoder::new(&mut file);
-    encoder.write_image(&rgba, pixels[0] as u32, pixels[1] as u32, ExtendedColorType::Rgba8)?;
-    Ok(file)
+    (pixels, rgba)
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ use egui::{
 };
 
 use crate::command::{Command, Commands};
+use crate::keys::escape_closes;
 use crate::mcp::messages::{DownloadMessage, McpScreenMessage};
 use crate::mcp::model::firmware::{Firmware, FirmwareAction, LISTED, Stage};
 use crate::model::{Model, Sheet};
@@ -24,7 +25,7 @@ pub fn firmware_ui(ctx: &Context, model: &mut Model, commands: &mut Commands, ro
     }
     let mut open = true;
     let size = vec2(760.0, 680.0).min(room.size() - vec2(24.0, 60.0));
-    Window::new("Firmware")
+    let shown = Window::new("Firmware")
         .open(&mut open)
         .collapsible(false)
         .default_size(size)
@@ -35,7 +36,8 @@ pub fn firmware_ui(ctx: &Context, model: &mut Model, commands: &mut Commands, ro
             ScrollArea::vertical().auto_shrink([false; 2]).show(ui, |ui| contents_ui(ui, model, commands));
         });
     // The window can be put away while an update runs; the update goes on.
-    model.front.mcp_mut().firmware.open = open;
+    let closes = escape_closes(ctx, shown.as_ref()) && !model.front.mcp().firmware.stage.is_running();
+    model.front.mcp_mut().firmware.open = open && !closes;
 }
 
 fn contents_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {

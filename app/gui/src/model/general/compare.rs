@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use brushwork_link::Message;
-use brushwork_link::settings::{Difference, Group, SettingsImage};
+use brushwork_link::settings::{Difference, Group, Profile, SettingsImage};
 
 mod acts;
 
@@ -21,6 +21,8 @@ pub enum Side {
     Default,
     /// The backup of that name.
     Backup(String),
+    /// Another unit of the open links, by its name.
+    Unit(String),
 }
 
 /// Which two copies are set side by side.
@@ -30,6 +32,8 @@ pub struct Comparing {
     pub right: Side,
     /// Backups that were opened, by name, as they are for this controller.
     opened: BTreeMap<String, Result<Fitted, Message>>,
+    /// The other units of the open links whose settings are known, by name, as they were when the sheet was opened.
+    pub others: BTreeMap<String, Profile>,
 }
 
 #[derive(Clone, Debug)]
@@ -40,7 +44,7 @@ struct Fitted {
 
 impl Default for Comparing {
     fn default() -> Self {
-        Self { left: Side::Ram, right: Side::Default, opened: BTreeMap::new() }
+        Self { left: Side::Ram, right: Side::Default, opened: BTreeMap::new(), others: BTreeMap::new() }
     }
 }
 

@@ -4,7 +4,7 @@
 
 use std::collections::BTreeMap;
 
-use brushwork_link::settings::WriteReport;
+use brushwork_link::settings::{Profile, WriteReport};
 use brushwork_link::{Event, Identity, JobEnding, Message, QueuedJob, SettingsImage, Stream};
 
 use super::kept::{Came, Kept};
@@ -65,6 +65,11 @@ impl Settings {
 
     pub fn unit_mut(&mut self) -> Option<&mut UnitSettings> {
         self.units.get_mut(self.current.as_ref()?)
+    }
+
+    /// What is known of the RAM of a unit that may not be the one that is looked at.
+    pub fn profile_at(&self, identity: &Identity) -> Option<Profile> {
+        self.units.get(&UnitKey::of(identity))?.profile(false)
     }
 
     /// A unit that may not be the one that is looked at.

@@ -24,10 +24,10 @@ pub fn terminal_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let Some((address, facts)) = unit else { return };
     let note = match facts.protocol {
         Protocol::Binary => {
-            "Commands by hand, in text or in hex. This unit speaks binary. The traffic (Ctrl+T) shows every byte."
+            "Commands by hand, in text or in hex. This unit speaks binary. The traffic panel shows every byte."
         }
         Protocol::Text => {
-            "Commands by hand, in text or in hex. This unit speaks text. The traffic (Ctrl+T) shows every byte."
+            "Commands by hand, in text or in hex. This unit speaks text. The traffic panel shows every byte."
         }
     };
     title_ui(ui, "Terminal", note);

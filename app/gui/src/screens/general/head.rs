@@ -10,6 +10,7 @@ use crate::model::settings::{Running, Saved};
 use crate::model::{GeneralView, IndicatorState, SettingsAction, Sheet, UnitSettings};
 use crate::screens::messages::SettingMessage;
 use crate::widgets::text_field::text_field_ui;
+use crate::widgets::with_time_left;
 
 const SEARCH_WIDTH: f32 = 190.0;
 /// So that a count in a button moves nothing.
@@ -195,7 +196,9 @@ fn running_ui(ui: &mut Ui, running: &Running, commands: &mut Commands) {
         commands.push(Command::Settings(SettingsAction::Cancel));
     }
     let text = if running.text.is_empty() { running.name().to_string() } else { running.text.clone() };
-    let bar = ProgressBar::new(running.fraction.unwrap_or(0.0)).desired_width(ui.available_width());
+    let fraction = running.fraction.unwrap_or(0.0);
+    let text = with_time_left(ui, "settings", fraction, &text);
+    let bar = ProgressBar::new(fraction).desired_width(ui.available_width());
     let response = ui.add(bar.text(text.as_str()));
     let spoken = SpokenMessage::Progress { what: running.name().to_string(), text: text.clone() }.to_string();
     response.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, &spoken));

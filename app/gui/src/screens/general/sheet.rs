@@ -10,6 +10,7 @@ use super::sheet_parts::{Act, Offer, differences_ui, indicator_ui, text_ui, titl
 use super::{compare, kept, profile};
 use crate::command::{Command, Commands};
 use crate::family::SettingsWords;
+use crate::keys::top_layer;
 use crate::model::{GeneralView, IndicatorState, Saved, SettingsAction, Sheet, Take, UnitSettings};
 use crate::screens::messages::SettingMessage;
 use brushwork_core::keep::WearLevel;
@@ -31,8 +32,9 @@ pub fn sheet_ui(
     let Some(sheet) = general.sheet.clone() else { return };
     let height = (ui.available_height() - BUTTONS_HEIGHT).max(60.0);
     let offers = ui.scope(|ui| {
-        ui.set_height(height);
-        let area = ScrollArea::vertical().id_salt(format!("{sheet:?}")).auto_shrink(false);
+        // The buttons stand below what is said, and at the bottom only where that is long.
+        let area = ScrollArea::vertical().id_salt(format!("{sheet:?}")).auto_shrink([false, true]);
+        let area = area.max_height(height);
         area.show(ui, |ui| content_ui(ui, general, &sheet, writing, words)).inner
     });
     buttons_ui(ui, general, &offers.inner, commands);
@@ -85,7 +87,8 @@ fn buttons_ui(ui: &mut Ui, general: &mut GeneralView<'_>, offers: &[Offer], comm
         if focus && !offers.first().is_some_and(|(_, _, enabled)| *enabled) {
             back.request_focus();
         }
-        close = back.clicked() || ui.input(|input| input.key_pressed(egui::Key::Escape));
+        let is_on_top = top_layer(ui.ctx()).is_none();
+        close = back.clicked() || (is_on_top && ui.input(|input| input.key_pressed(egui::Key::Escape)));
     });
     match chosen {
         Some(Act::FamilyAction(action)) => commands.push(Command::Settings(action)),

@@ -1,14 +1,17 @@
 //! What General Settings does to set two copies side by side.
 
+use std::collections::BTreeMap;
+
 use brushwork_core::messages::SideMessage;
 use brushwork_link::Message;
 use brushwork_link::messages::ProfileMessage;
-use brushwork_link::settings::{CopiedMotor, SettingsImage, copy_motor, diff};
+use brushwork_link::settings::{CopiedMotor, Profile, SettingsImage, copy_motor, diff};
 
-use super::{Comparison, Fitted, Side, Take};
+use super::{Comparing, Comparison, Fitted, Side, Take};
 use crate::messages::{CompareMessage, NameMessage};
 use crate::model::general::GeneralView;
 use brushwork_core::keep::Backup;
+use brushwork_core::settings::for_all::keep_addresses;
 use brushwork_core::settings::{eeprom_title, fitted, known_defaults};
 
 impl GeneralView<'_> {
@@ -28,12 +31,14 @@ impl GeneralView<'_> {
                 let backup = self.settings.backups().iter().find(|backup| backup.name == *name);
                 NameMessage::Backup { title: backup.map_or_else(|| name.clone(), Backup::title) }.to_string()
             }
+            Side::Unit(name) => name.clone(),
         }
     }
 
     /// Every side that there is.
     pub fn sides(&self) -> Vec<Side> {
         let mut sides = vec![Side::Ram, Side::Eeprom, Side::Profile, Side::Default];
+        sides.extend(self.comparing.others.keys().cloned().map(Side::Unit));
         sides.extend(self.settings.backups().iter().map(|backup| Side::Backup(backup.name.clone())));
         sides
     }
@@ -61,6 +66,19 @@ impl GeneralView<'_> {
         let (profile, mut changes) = fitted(opened, unit.table());
         changes.splice(upgrades..upgrades, corrected);
         Ok(Fitted { image: profile.settings, changes })
+    }
+
+    /// Takes in which other units there are to be compared with. One that is gone is compared with no more.
+    pub fn set_others(&mut self, others: BTreeMap<String, Profile>) {
+        let gone = |side: &Side| matches!(side, Side::Unit(name) if !others.contains_key(name));
+        let usual = Comparing::default();
+        if gone(&self.comparing.left) {
+            self.comparing.left = usual.left;
+        }
+        if gone(&self.comparing.right) {
+            self.comparing.right = usual.right;
+        }
+        self.comparing.others = others;
     }
 
     /// The two sides that are chosen, side by side.
@@ -124,6 +142,13 @@ impl GeneralView<'_> {
             Side::Backup(name) => {
                 let opened = self.comparing.opened.get(name).cloned();
                 opened.unwrap_or_else(|| Err(CompareMessage::BackupNotOpened.into()))
+            }
+            Side::Unit(name) => {
+                let other = self.comparing.others.get(name).ok_or(CompareMessage::UnitGone)?;
+                let (mut fitted, table) = (other.fitted_to(unit.table()), unit.table());
+                let kept = keep_addresses(table, &mut fitted.profile.settings);
+                fitted.changes.extend(kept);
+                Ok(Fitted { image: fitted.profile.settings, changes: fitted.changes })
             }
         }
     }
