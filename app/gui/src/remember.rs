@@ -18,9 +18,9 @@ use egui::{Context, Rect, ThemePreference, ViewportInfo};
 use serde::{Deserialize, Serialize};
 
 use super::language::Language;
+use super::model::Model;
 use super::model::screen::Screen;
 use super::model::unit_view::UnitView;
-use super::model::Model;
 use brushwork_core::keep::folder;
 
 /// How long a change waits, so that a window being dragged does not write a file for each step, seconds.
