@@ -64,13 +64,13 @@ impl FileDialog {
     /// Opens the dialog.
     #[cfg(not(target_family = "wasm"))]
     pub fn ask(action: FileAction, kind: FileKind) -> Self {
-        Self::answered_by(&IS_MISSING, move || desktop::choose(action, &kind))
+        Self::answered_by((&IS_MISSING, desktop::soonest_cancel()), move || desktop::choose(action, &kind))
     }
 
     /// Asks for a folder.
     #[cfg(not(target_family = "wasm"))]
     pub fn ask_folder() -> Self {
-        Self::answered_by(&IS_MISSING, desktop::choose_folder)
+        Self::answered_by((&IS_MISSING, desktop::soonest_cancel()), desktop::choose_folder)
     }
 
     /// Opens the browser's dialog; a file that is saved is downloaded under the name that is offered.
@@ -90,18 +90,20 @@ impl FileDialog {
     /// A web page has no folders but the one that is downloaded.
     #[cfg(target_family = "wasm")]
     pub fn ask_folder() -> Self {
-        Self::answered_by(&IS_MISSING, || vec![PathBuf::from(brushwork_core::keep::folder::DOWNLOADS)])
+        Self::answered_by((&IS_MISSING, SOONEST_CANCEL), || {
+            vec![PathBuf::from(brushwork_core::keep::folder::DOWNLOADS)]
+        })
     }
 
     fn answered_by(
-        is_missing: &'static AtomicBool,
+        (is_missing, soonest_cancel): (&'static AtomicBool, Duration),
         choose: impl FnOnce() -> Vec<PathBuf> + Send + 'static,
     ) -> Self {
         let (sender, answer) = bounded(1);
         let ask = move || {
             let asked_at = Instant::now();
             let chosen = choose();
-            if chosen.is_empty() && asked_at.elapsed() < SOONEST_CANCEL {
+            if chosen.is_empty() && asked_at.elapsed() < soonest_cancel {
                 is_missing.store(true, Ordering::Relaxed);
             }
             // The window may have gone on without the answer.
@@ -133,7 +135,27 @@ impl FileDialog {
 
 #[cfg(not(target_family = "wasm"))]
 mod desktop {
-    use super::{FileAction, FileKind, PathBuf};
+    use std::env;
+    use std::path::Path;
+    use std::time::Duration;
+
+    use super::{FileAction, FileKind, PathBuf, SOONEST_CANCEL};
+
+    /// How soon somebody may have cancelled a dialog: never where nothing could have shown one.
+    pub(super) fn soonest_cancel() -> Duration {
+        let on_path = |program: &str| {
+            let paths = env::var_os("PATH").unwrap_or_default();
+            env::split_paths(&paths).any(|folder| folder.join(program).is_file())
+        };
+        let has_bus = || {
+            let folder = env::var_os("XDG_RUNTIME_DIR");
+            env::var_os("DBUS_SESSION_BUS_ADDRESS").is_some()
+                || folder.is_some_and(|folder| Path::new(&folder).join("bus").exists())
+        };
+        // Elsewhere the system itself has the dialog.
+        let asks_others = cfg!(all(unix, not(target_os = "macos")));
+        if asks_others && !has_bus() && !on_path("zenity") { Duration::MAX } else { SOONEST_CANCEL }
+    }
 
     pub(super) fn choose(action: FileAction, kind: &FileKind) -> Vec<PathBuf> {
         let extensions: Vec<&str> = kind.extension.split(',').collect();
@@ -164,7 +186,7 @@ mod tests {
     fn the_window_does_not_wait_for_the_user() {
         let (choose, chosen) = bounded::<()>(1);
         static IS_MISSING: AtomicBool = AtomicBool::new(false);
-        let dialog = FileDialog::answered_by(&IS_MISSING, move || {
+        let dialog = FileDialog::answered_by((&IS_MISSING, SOONEST_CANCEL), move || {
             chosen.recv().unwrap();
             vec![PathBuf::from("motor.json")]
         });
@@ -177,16 +199,19 @@ mod tests {
     #[test]
     fn a_desktop_without_a_dialog_reads_as_cancelled() {
         static IS_MISSING: AtomicBool = AtomicBool::new(false);
-        let failing = FileDialog::answered_by(&IS_MISSING, || panic!("no dialog here"));
+        let failing = FileDialog::answered_by((&IS_MISSING, SOONEST_CANCEL), || panic!("no dialog here"));
         assert_eq!(settled(&failing), FileAnswer::None);
-        assert_eq!(settled(&FileDialog::answered_by(&IS_MISSING, Vec::new)), FileAnswer::None);
+        assert_eq!(
+            settled(&FileDialog::answered_by((&IS_MISSING, SOONEST_CANCEL), Vec::new)),
+            FileAnswer::None
+        );
         assert!(IS_MISSING.load(Ordering::Relaxed), "an answer that no person can have given");
     }
 
     #[test]
     fn a_dialog_that_was_looked_at_and_cancelled_is_not_missing() {
         static IS_MISSING: AtomicBool = AtomicBool::new(false);
-        let looked_at = FileDialog::answered_by(&IS_MISSING, || {
+        let looked_at = FileDialog::answered_by((&IS_MISSING, SOONEST_CANCEL), || {
             std::thread::sleep(SOONEST_CANCEL);
             Vec::new()
         });
@@ -199,7 +224,7 @@ mod tests {
         static IS_MISSING: AtomicBool = AtomicBool::new(false);
         let files = ["one.csv", "two.csv"].map(PathBuf::from);
         let chosen = files.to_vec();
-        let dialog = FileDialog::answered_by(&IS_MISSING, move || chosen);
+        let dialog = FileDialog::answered_by((&IS_MISSING, SOONEST_CANCEL), move || chosen);
         let found = until_some("an answer", || dialog.chosen(), || "none yet".to_owned());
         assert_eq!(found, files);
     }

@@ -250,6 +250,8 @@ fn set(style: &mut Style, theme: Theme) {
     style.spacing.item_spacing = vec2(8.0, 6.0);
     style.spacing.button_padding = vec2(10.0, 4.0);
     style.spacing.interact_size = vec2(40.0, 24.0);
+    // The longest list of a setting unfolds in full.
+    style.spacing.combo_height = 430.0;
     style.spacing.icon_width = 16.0;
     style.animation_time = 0.0;
     style.visuals = visuals(theme);

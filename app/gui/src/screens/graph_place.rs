@@ -14,7 +14,6 @@ use crate::widgets::stop;
 /// Size of the graph's own window at first.
 const WINDOW_SIZE: Vec2 = vec2(960.0, 540.0);
 const LEAST_WINDOW_SIZE: Vec2 = vec2(640.0, 320.0);
-const STOP_WIDTH: f32 = 150.0;
 
 /// Fills what is left of `ui`.
 pub fn graph_place_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
@@ -55,13 +54,10 @@ pub fn detached_ui(ctx: &Context, model: &mut Model, commands: &mut Commands) {
         let fill = Palette::of(ui).panel;
         egui::Frame::new().fill(fill).inner_margin(10.0).show(ui, |ui| {
             ui.horizontal(|ui| {
-                ui.scope(|ui| {
-                    ui.set_max_width(STOP_WIDTH);
-                    let response = stop::small_stop_ui(ui, is_any_connected);
-                    if stop::pressed(&response) {
-                        commands.push(Command::Stop);
-                    }
-                });
+                let response = stop::small_stop_ui(ui, is_any_connected);
+                if stop::pressed(&response) {
+                    commands.push(Command::Stop);
+                }
                 if ui.button("Put it back").on_hover_text("The graph goes back to its screen").clicked() {
                     commands.push(Command::Graph(GraphAction::ToggleDetached));
                 }

@@ -129,7 +129,9 @@ fn contents_ui(ui: &mut Ui, palette: &mut Palette, rows: &[Row]) -> Option<Done>
     if escape {
         return Some(Done::Close);
     }
-    let entered = found.get(palette.chosen).copied().filter(|_| enter);
+    // Before anything was typed or walked to, nothing is meant: letters may still be on their way.
+    let is_meant = palette.chosen > 0 || !palette.query.trim().is_empty();
+    let entered = found.get(palette.chosen).copied().filter(|_| enter && is_meant);
     clicked.or(entered).map(Done::Run)
 }
 

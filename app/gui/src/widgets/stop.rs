@@ -1,6 +1,6 @@
 //! The Stop All button.
 
-use egui::{Align2, FontId, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
+use egui::{Align2, FontId, Response, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, vec2};
 
 use crate::keys::said_stop_words;
 use crate::language::{said, word};
@@ -12,20 +12,25 @@ const HEIGHT: f32 = 64.0;
 
 /// Height where it stands in a row with others.
 const SMALL_HEIGHT: f32 = 28.0;
+const SMALL_FONT: FontId = FontId::proportional(13.5);
+/// Room beside its words.
+const SMALL_MARGIN: f32 = 20.0;
 
 /// Fills the width. `connected` only changes how it looks: pressing it is never refused. It names the keys that stop at this moment.
 pub fn stop_ui(ui: &mut Ui, connected: bool) -> Response {
-    sized_ui(ui, connected, HEIGHT)
+    sized_ui(ui, connected, vec2(ui.available_width(), HEIGHT))
 }
 
-/// The same as high as other buttons.
+/// The same as high as other buttons, and as wide as its longest words.
 pub fn small_stop_ui(ui: &mut Ui, connected: bool) -> Response {
-    sized_ui(ui, connected, SMALL_HEIGHT)
+    let words = said(&ButtonMessage::StopAll { keys: word("bar", "Space or Esc") });
+    let words = ui.painter().layout_no_wrap(words, SMALL_FONT, Palette::of(ui).text);
+    sized_ui(ui, connected, vec2(words.size().x + SMALL_MARGIN, SMALL_HEIGHT))
 }
 
-fn sized_ui(ui: &mut Ui, connected: bool, height: f32) -> Response {
+fn sized_ui(ui: &mut Ui, connected: bool, size: Vec2) -> Response {
     let palette = Palette::of(ui);
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, word("bar", "Stop All")));
     let keys = said_stop_words(ui.ctx());
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_keyboard_shortcut(keys.clone()));
@@ -41,9 +46,9 @@ fn sized_ui(ui: &mut Ui, connected: bool, height: f32) -> Response {
     };
     let painter = ui.painter();
     painter.rect(rect, 6.0, fill, ring, StrokeKind::Inside);
-    if height < HEIGHT {
+    if size.y < HEIGHT {
         let words = said(&ButtonMessage::StopAll { keys: keys.to_string() });
-        painter.text(rect.center(), Align2::CENTER_CENTER, words, FontId::proportional(13.5), text);
+        painter.text(rect.center(), Align2::CENTER_CENTER, words, SMALL_FONT, text);
         return response;
     }
     painter.text(

@@ -276,6 +276,21 @@ fn the_palette_finds_an_action_by_a_few_letters_and_runs_it_by_key() {
 }
 
 #[test]
+fn enter_in_a_palette_that_nothing_was_typed_into_does_nothing() {
+    let mut bench = Bench::new();
+    let tabs = bench.model().mcl.documents().len();
+    press_keys(&mut bench, CTRL_SHIFT, Key::P);
+    bench.key(Key::Enter);
+    bench.pass(FRAME * 3);
+    assert!(bench.model().palette.is_some(), "letters may be on their way");
+    assert_eq!((bench.model().screen, bench.model().mcl.documents().len()), (Screen::DeviceStatus, tabs));
+    bench.key(Key::ArrowDown);
+    bench.key(Key::Enter);
+    bench.pass(FRAME * 3);
+    assert!(bench.model().palette.is_none(), "what was walked to is run");
+}
+
+#[test]
 fn the_palette_is_walked_by_arrows_and_says_why_something_cannot_be_done() {
     let mut bench = Bench::new();
     press_keys(&mut bench, CTRL_SHIFT, Key::P);
