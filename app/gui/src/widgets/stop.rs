@@ -23,7 +23,8 @@ pub fn stop_ui(ui: &mut Ui, connected: bool) -> Response {
 
 /// The same as high as other buttons, and as wide as its longest words.
 pub fn small_stop_ui(ui: &mut Ui, connected: bool) -> Response {
-    let words = said(&ButtonMessage::StopAll { keys: word("bar", "Space or Esc") });
+    let keys = word("bar", "Space or Esc");
+    let words = said(&ButtonMessage::StopAll { keys });
     let words = ui.painter().layout_no_wrap(words, SMALL_FONT, Palette::of(ui).text);
     sized_ui(ui, connected, vec2(words.size().x + SMALL_MARGIN, SMALL_HEIGHT))
 }
