@@ -322,6 +322,7 @@ bar =
     .profile-backup-recording-tuning-report-script-or-firmware-image = Profil, Sicherung, Aufzeichnung, Einstellbericht, Skript oder Firmware-Abbild
     .attached-devices = Angeschlossene Geräte
     .in-this-program = in diesem Programm
+    .serial-port = serieller Anschluss
     .unplugged = ausgesteckt
     .named-below = unten genannt
     .no-serial-port-found-plug-in-a-controller-or-type-a-path = Kein serieller Anschluss gefunden. Stecken Sie einen Regler ein oder geben Sie unten einen Pfad ein.
@@ -355,6 +356,11 @@ bar =
     .the-debugger-holds-the-script-where-it-is-its-last-motor-commands = Die Fehlersuche hält das Skript an. Seine letzten Befehle an die Motoren gelten weiter: „Alles anhalten“ hält sie an und beendet es.
     .a-script-commands-the-motors-by-itself-stop-all-ends-it-so = Ein Skript steuert die Motoren selbst. „Alles anhalten“ beendet es, ebenso das Verlassen des MCL-Editors, von dem aus es gestartet wurde.
     .dev-ttyusb0-dev-pts-4-com3-tcp-127-0-0-1-5000 = /dev/ttyUSB0, /dev/pts/4, COM3, tcp:127.0.0.1:5000, sim:mcp266,generation=4. Eingabe verbindet.
+
+value =
+    .address = Adresse
+    .generation = Generation
+    .node = Knoten
 
 gravity =
     .note = Hinweis

@@ -88,12 +88,24 @@ fn translated<'a>(
         let pattern = bundle.get_message(theme)?.get_attribute(member)?;
         let mut given = FluentArgs::new();
         for (name, value) in values() {
-            given.set(name, value_of(value.to_string()));
+            given.set(name, value_of(in_words(value.to_string())));
         }
         let mut errors = Vec::new();
         let text = bundle.format_pattern(pattern.value(), Some(&given), &mut errors).into_owned();
         errors.is_empty().then_some(text)
     })
+}
+
+/// A value that begins with a word of ours: "address 0x80".
+fn in_words(text: String) -> String {
+    let Some((first, rest)) = text.split_once(' ') else { return text };
+    let first = match first {
+        "address" => word("value", "address"),
+        "generation" => word("value", "generation"),
+        "node" => word("value", "node"),
+        _ => return text,
+    };
+    format!("{first} {rest}")
 }
 
 /// More digits behind the point than a sentence of ours ever has: a measured value as it was measured.

@@ -3,6 +3,7 @@
 use super::connection::{Connection, ConnectionId, place_of};
 use super::simulated::Simulated;
 use crate::family::{self, Family};
+use crate::language::word;
 use crate::messages::FirmwareMessage;
 use brushwork_link::transport::TargetError;
 use brushwork_link::transport::target::LineOptions;
@@ -243,7 +244,7 @@ pub fn described(port: &PortInfo) -> String {
         }
         (Some(product), _) => product.clone(),
         (None, true) => "USB".to_owned(),
-        (None, false) => "serial port".to_owned(),
+        (None, false) => word("bar", "serial port"),
     }
 }
 

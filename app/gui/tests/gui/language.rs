@@ -255,7 +255,9 @@ fn device_list_and_message_line_are_german_too_with_figures_as_germans_write_the
     bench.pass_ms(200);
     bench.press("Verbinden");
     bench.pass_ms(1500);
-    assert!(bench.sees_part("Hinweis: Verbunden mit MCP266 an sim:mcp266"), "{:?}", bench.said());
+    let connected =
+        "Hinweis: Verbunden mit MCP266 an sim:mcp266, Adresse 0x80, Firmware 1.0.0 (Generation 1).";
+    assert!(bench.sees(connected), "{:?}", bench.said());
     assert!(bench.sees_part(", verbunden") && bench.sees("Trennen"));
     bench.press("PWM");
     bench.press("Arm");
