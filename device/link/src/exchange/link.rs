@@ -2,17 +2,16 @@
 
 use super::error::{ExchangeError, Tries};
 use super::given_up::GivenUp;
-use super::request::{Judgement, Outgoing, Span};
+use super::request::{Judgement, Outgoing, RETRIES, Span};
 use super::statistics::{Counters, LinkStatistics};
 use super::trace::{Trace, Traffic};
-use super::turnaround::{Lateness, Turnaround};
+use super::turnaround::{LONGEST, Lateness, Turnaround};
 use super::watch::Watch;
 use crate::capability::{CapabilityBook, KeepsCapabilities};
 use crate::clock::Clock;
 use crate::device::StopBytes;
-use crate::transport::Transport;
+use crate::transport::{SecondWay, Transport};
 use std::io;
-use std::process::Stdio;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -28,6 +27,8 @@ const LATE_WAKE: Duration = Duration::from_millis(2);
 const STOLEN_MOST: Duration = Duration::from_millis(300);
 /// Work of a controller beside which its reply still tells how late the line is: registers are read within it, a whole EEPROM is not.
 const SHORT_WORK: Duration = Duration::from_millis(60);
+/// More than this a wait is not doubled: it ends at [`LONGEST`] anyway.
+const MOST_DOUBLINGS: u32 = 10;
 /// Of what is heard without a request that it answers, no more is kept: the longest reply, thrice.
 const MOST_HEARD: usize = 2048;
 /// Waiting for bytes is cut into slices of this, so that a Stop is seen in time.
@@ -341,7 +342,7 @@ impl Exchange {
     ///
     /// # Errors
     /// As [`Transport::second_way`].
-    pub fn second_way(&self) -> io::Result<Stdio> {
+    pub fn second_way(&self) -> io::Result<SecondWay> {
         self.transport.second_way()
     }
 
@@ -396,7 +397,8 @@ impl Exchange {
         tries: Tries,
     ) -> Result<Duration, ExchangeError> {
         let mut buffer = [0; 1024];
-        let mut deadline = requested_at + self.allowance(request, request.bytes.len() + request.reply_length);
+        let allowance = self.allowance(request, request.bytes.len() + request.reply_length);
+        let mut deadline = requested_at + allowance + self.longer_for(tries);
         let mut lost = Duration::ZERO;
         loop {
             let now = self.clock.now();
@@ -457,6 +459,14 @@ impl Exchange {
             + self.latency.unwrap_or_else(|| self.longest_turnaround())
             + request.patience
             + self.patience
+    }
+
+    /// What is asked more often than most requests are, as a stop is, gets twice as long each time (RFC 6298, section 5.5): who has not answered by
+    /// then can only be heard by waiting longer.
+    fn longer_for(&self, tries: Tries) -> Duration {
+        let usual = self.longest_turnaround();
+        let doublings = tries.0.saturating_sub(1 + RETRIES).min(MOST_DOUBLINGS);
+        (usual * 2_u32.pow(doublings)).min(LONGEST.max(usual)) - usual
     }
 
     /// How long this line and the controller behind it may take beyond the time of the bytes on the wire, as far as they have shown.

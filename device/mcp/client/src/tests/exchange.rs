@@ -9,7 +9,7 @@ use brushwork_link::messages::ActMessage;
 use brushwork_link::{Transport, TransportError};
 use brushwork_mcp_wire::packet_serial::{Address, Generation, Request, number};
 use std::cell::Cell;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 /// Read main battery of 0x80: no CRC.
@@ -139,6 +139,24 @@ fn silence_is_tried_three_times_with_the_gap_in_between() {
     assert_eq!(clock.now(), ms(150) + RECOVERY * 2);
     let statistics = exchange.statistics();
     assert_eq!((statistics.retries, statistics.timeouts, statistics.transactions), (2, 3, 0));
+}
+
+/// A controller on a crowded computer, or one that is busy otherwise, is heard by a stop, which asks oftener than others.
+#[test]
+fn what_is_asked_oftener_than_thrice_is_waited_for_twice_as_long_each_time() {
+    let asked_at = Arc::new(Mutex::new(Vec::new()));
+    let noted = asked_at.clone();
+    let (mut exchange, _, _) = exchange(move |_, now| {
+        noted.lock().unwrap().push(now);
+        if now < ms(250) { Vec::new() } else { vec![(ms(180), battery())] }
+    });
+    let request = Request::new(Address::DEFAULT, number::READ_MAIN_BATTERY, &[]);
+    let ask = Ask { request: &request, generation: Generation::Gen1, permit: Permit::default(), retries: 4 };
+    transact(&mut exchange, &Unwatched, &ask).unwrap();
+    let asked_at = asked_at.lock().unwrap();
+    let waits: Vec<_> = asked_at.windows(2).map(|pair| pair[1] - pair[0] - RECOVERY).collect();
+    let usual = waits[0];
+    assert_eq!(waits, [usual, usual, usual, usual * 2]);
 }
 
 #[test]
