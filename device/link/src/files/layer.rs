@@ -63,6 +63,12 @@ pub trait Files: fmt::Debug + Send + Sync {
     /// It is not there, or the system refuses.
     fn remove(&self, path: &Path) -> io::Result<()>;
 
+    /// Takes an empty folder away.
+    ///
+    /// # Errors
+    /// It is not there, is not empty, or the system refuses.
+    fn remove_folder(&self, folder: &Path) -> io::Result<()>;
+
     /// Opens a file that programs lock, making it where it is not there. `None` where nobody else can be there.
     ///
     /// # Errors

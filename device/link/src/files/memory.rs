@@ -150,6 +150,11 @@ impl Files for MemoryDisk {
         self.state().take(path).map(drop)
     }
 
+    /// It went with the last file in it.
+    fn remove_folder(&self, _folder: &Path) -> io::Result<()> {
+        Ok(())
+    }
+
     fn open_lock(&self, _path: &Path) -> io::Result<Option<File>> {
         Ok(None)
     }

@@ -48,6 +48,10 @@ impl Files for Disk {
         PAGE.remove(path)
     }
 
+    fn remove_folder(&self, folder: &Path) -> io::Result<()> {
+        PAGE.remove_folder(folder)
+    }
+
     fn open_lock(&self, path: &Path) -> io::Result<Option<File>> {
         PAGE.open_lock(path)
     }

@@ -246,6 +246,15 @@ impl Files for SimulatedDisk {
         Ok(())
     }
 
+    fn remove_folder(&self, folder: &Path) -> io::Result<()> {
+        let mut state = self.state();
+        state.begin(Call::Change)?;
+        if state.names.keys().any(|name| name.parent() == Some(folder)) {
+            return Err(io::ErrorKind::DirectoryNotEmpty.into());
+        }
+        state.folders.remove(folder).then_some(()).ok_or_else(|| io::ErrorKind::NotFound.into())
+    }
+
     fn open_lock(&self, _path: &Path) -> io::Result<Option<File>> {
         self.state().begin(Call::Fill).map(|_| None)
     }

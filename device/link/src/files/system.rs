@@ -44,6 +44,10 @@ impl Files for Disk {
         fs::remove_file(path)
     }
 
+    fn remove_folder(&self, folder: &Path) -> io::Result<()> {
+        fs::remove_dir(folder)
+    }
+
     fn open_lock(&self, path: &Path) -> io::Result<Option<File>> {
         File::options().create(true).truncate(false).write(true).open(path).map(Some)
     }
