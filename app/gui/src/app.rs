@@ -27,6 +27,7 @@ use super::model::{Appearance, ConnectionId, Model};
 use super::parts::{Parts, SimulatedWorld};
 use super::remember::Memory;
 use super::screens::face;
+use super::widgets::text_field;
 use super::{actions, keys, shell, theme};
 use crate::model::Afterwards;
 use crate::model::{Arming, Effect, Gravity, Owner, Screen, Section, Sheet, Side, Tab};
@@ -117,6 +118,9 @@ impl App {
         self.last_frame.drawn();
         if keys::take_stop_key(&ctx).is_some() {
             self.stop();
+        }
+        if let Some((bytes, most)) = text_field::refuse_long_paste(&ctx) {
+            self.model.messages.fail(WindowStatusMessage::PasteTooLong { bytes, most });
         }
         focus::note_input(&ctx);
         self.update(&ctx);

@@ -193,6 +193,7 @@ messages! {
         WentAhead { seconds: u64 } "The simulated time has gone {seconds} s ahead: this browser cannot draw the window in the middle of a run.",
         NoLinkThread "Could not open the link: the system gave no thread. Try again.",
         Of { target: String, text: Message } "{target}: {text}",
+        PasteTooLong { bytes: usize, most: usize } "Nothing was pasted: the clipboard holds {bytes} bytes of text, and this place takes at most {most}.",
         NodeStartSent { node: NodeId } "The start was sent to {node}: its heartbeat tells what comes of it.",
         ConnectAgain { sentence: Message } "{sentence} Connect to the bus again.",
         NodeNotStarted "Could not start the node: the system gave no thread. Try again.",

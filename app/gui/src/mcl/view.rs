@@ -43,6 +43,7 @@ pub fn view_ui(
     }
     if ui.memory(|memory| memory.has_focus(id)) {
         text_field::keep_space(ui, id);
+        text_field::take_many_lines(ui, id);
         let page = (document.view.size.y / metrics.row) as usize;
         input::take(ui, id, document, &mut list, page.saturating_sub(1).max(1));
         let filter = input::filter(list.is_some());

@@ -76,6 +76,27 @@ fn keys_select_and_what_is_typed_takes_the_place_of_it() {
     assert_eq!(text(&mut bench), "a\nb");
 }
 
+#[test]
+fn a_text_from_the_clipboard_that_is_too_long_is_refused_and_said() {
+    let mut bench = editor();
+    let paste = |bench: &mut Bench, text: &str| {
+        bench.harness.event(Event::Paste(text.to_owned()));
+        bench.pass_ms(100);
+    };
+    let program = "x=1\n".repeat(5_000);
+    paste(&mut bench, &program);
+    assert!(text(&mut bench) == program && !bench.sees_part("Nothing was pasted"));
+    paste(&mut bench, &"x=1\n".repeat(300_000));
+    assert!(text(&mut bench) == program && bench.sees_part("Nothing was pasted"));
+    bench.model().messages.dismiss();
+    bench.key_with(CTRL, Key::F);
+    bench.pass_ms(100);
+    paste(&mut bench, "x");
+    paste(&mut bench, &program);
+    assert_eq!(bench.model().mcl.find.query.text, "x");
+    assert!(bench.sees_part("20000 bytes of text, and this place takes at most 16384"));
+}
+
 fn open_file(bench: &mut Bench, name: &str, bytes: &[u8]) -> std::path::PathBuf {
     let path = bench.store().root().expect("a test has a folder").join(name);
     std::fs::write(&path, bytes).expect("the folder can be written");
