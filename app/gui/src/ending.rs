@@ -2,6 +2,8 @@
 //!
 //! The motors do not wait for the window: the signal's own thread stops every link. A window that then does not
 //! close, because it hangs or is not drawn, is ended.
+//!
+//! An X server that dies ends the program too, from within the X library once the window is drawn again; the motors do not wait for that either.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -42,6 +44,21 @@ impl EndBySignal {
         // A second handler is refused: then somebody else sees to the signals.
         let _ = ctrlc::set_handler(handler);
         end
+    }
+
+    /// Stops every link as soon as the X server is gone that draws the window: a connection of its own, over which nothing is asked, ends then.
+    #[cfg(all(unix, not(target_os = "macos")))]
+    pub fn ask_without_x_server(&self) {
+        use x11rb::connection::Connection as _;
+
+        let end = self.clone();
+        let watch = move || {
+            let Ok((connection, _)) = x11rb::connect(None) else { return };
+            while connection.wait_for_event().is_ok() {}
+            end.ask();
+        };
+        // Without the thread the window tells it, in its next frame.
+        let _ = std::thread::Builder::new().name("x server".to_owned()).spawn(watch);
     }
 
     /// Stops every link and wakes the window, which closes in its next frame.

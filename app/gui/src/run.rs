@@ -55,7 +55,7 @@ pub fn run(window: WindowOptions) -> Result<(), WindowError> {
                 *opened.lock().unwrap_or_else(PoisonError::into_inner) = true;
                 let mut app = App::new(&creation.egui_ctx, real_parts(&creation.egui_ctx));
                 app.remember(memory);
-                app.end_by(EndBySignal::install(), &creation.egui_ctx);
+                app.end_by(end_of_program(), &creation.egui_ctx);
                 app.model.appearance.plain |= window.plain;
                 if let Some(failure) = trouble {
                     app.model.messages.warn(failure.message());
@@ -107,9 +107,22 @@ fn native_options(remembered: &Remembered) -> eframe::NativeOptions {
     eframe::NativeOptions { viewport, dithering: false, ..Default::default() }
 }
 
+/// What ends the program from outside: signals and, where it draws the window, the death of the X server.
+fn end_of_program() -> EndBySignal {
+    let end = EndBySignal::install();
+    #[cfg(all(unix, not(target_os = "macos")))]
+    if !is_set("WAYLAND_DISPLAY") && !is_set("WAYLAND_SOCKET") {
+        end.ask_without_x_server();
+    }
+    end
+}
+
+fn is_set(name: &str) -> bool {
+    std::env::var_os(name).is_some_and(|value| !value.is_empty())
+}
+
 /// On Unix without a display there is no need to ask the window system.
 fn no_display() -> Option<String> {
-    let is_set = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
     let needs_one = cfg!(all(unix, not(target_os = "macos")));
     let has_one = is_set("DISPLAY") || is_set("WAYLAND_DISPLAY") || is_set("WAYLAND_SOCKET");
     (needs_one && !has_one)
