@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use brushwork_core::session::line::SimulatedLine;
 use brushwork_mcp_sim::controller::{Bus, Controller};
 use brushwork_mcp_wire::packet_serial::Generation;
 use brushwork_motion_mind_sim::{Mode, MotionMind, MotionMindBus, MotionMindConfig};
@@ -67,6 +68,19 @@ impl<M: Machine + 'static> Served<M> {
         self.handle.inspect(look).expect("the server runs as long as this does")
     }
 
+    /// Where the encoders stand, and the machine's time.
+    ///
+    /// # Panics
+    /// When the server has ended.
+    #[must_use]
+    pub fn counts(&self) -> (Vec<i64>, Duration) {
+        let look = |machine: &mut M| {
+            let view = machine.views().remove(0);
+            (view.axes.iter().map(|axis| axis.encoder_counts).collect(), view.now)
+        };
+        self.handle.inspect(look).expect("the server runs as long as this does")
+    }
+
     /// When the motor was off for good after `attack`. None where it was still driven after `limit`.
     pub fn off_after(&self, attack: impl FnOnce(), limit: Duration) -> Option<Off> {
         const FOR_GOOD: Duration = Duration::from_millis(300);
@@ -101,6 +115,18 @@ pub struct Off {
     pub off_after: Duration,
     /// The last look before it.
     pub driven_for: Duration,
+}
+
+/// A simulated controller as the program itself starts it, by its family and what follows `sim:`.
+///
+/// # Panics
+/// When there is no such one.
+#[must_use]
+pub fn simulated(family: &str, text: &str) -> SimulatedLine {
+    brushwork::install();
+    let is_meant = |found: &&brushwork::Family| found.driver.family().key() == family;
+    let family = brushwork::FAMILIES.iter().find(is_meant).expect("it is listed");
+    SimulatedLine::new(family.simulator.start(text).expect("it can be simulated").machine)
 }
 
 /// A Motion Mind that drives by duty, and has no time-out.

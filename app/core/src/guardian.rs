@@ -1,9 +1,9 @@
 //! A second process of this program for each line that is armed. It does nothing until the first one dies, however that may be, and then
 //! writes the stop.
 //!
-//! Its standard input is the port, opened a second time; its standard output is the end of a pipe to read from, which the system closes when
-//! the first process dies. A first process that lives and stands still while motors may move is ended before anything is written, so that two
-//! never speak at once.
+//! Its standard output is the end of a pipe to read from, which the system closes when the first process dies. Its standard input is the port,
+//! opened a second time; where the system opens a port to one process at a time, as Windows does, it opens the port when the first process is
+//! gone. A first process that lives and stands still while motors may move is ended before anything is written, so that two never speak at once.
 
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::path::PathBuf;
@@ -14,6 +14,7 @@ use std::time::{Duration, Instant};
 
 use brushwork_link::device::StopBytes;
 use brushwork_link::guardian::{Guardian, LineGuard};
+use brushwork_link::transport::{ConnectTarget, SecondWay, Transport};
 use crossbeam_channel::{RecvTimeoutError, bounded};
 use serde::{Deserialize, Serialize};
 
@@ -38,6 +39,9 @@ const STOP_AT: [Duration; 4] =
     [Duration::ZERO, Duration::from_millis(20), Duration::from_millis(60), Duration::from_millis(200)];
 /// Orders that wait to be looked at.
 const WAITING_ORDERS: usize = 64;
+/// How long a port that the first process had is tried until it opens, and how long after each other.
+const FREE_LIMIT: Duration = Duration::from_secs(5);
+const TRY_AGAIN: Duration = Duration::from_millis(5);
 /// How long a port may take no bytes.
 const WRITE_LIMIT: Duration = Duration::from_millis(200);
 
@@ -73,11 +77,16 @@ pub fn of_program() -> Option<Arc<dyn Guardian>> {
 struct Second(PathBuf);
 
 impl Guardian for Second {
-    fn start(&self, port: &str, line: Stdio) -> io::Result<Box<dyn LineGuard>> {
+    fn start(&self, port: &str, line: SecondWay) -> io::Result<Box<dyn LineGuard>> {
         let (orders, tell) = io::pipe()?;
-        never_wait(&tell)?;
+        let tell = Tell::through(tell)?;
+        let (line, later) = match line {
+            SecondWay::Open(line) => (line, None),
+            SecondWay::Later(target) => (Stdio::null(), Some(target)),
+        };
+        let opens_later = later.is_some();
         let mut command = Command::new(&self.0);
-        command.args([COMMAND, &std::process::id().to_string(), port]);
+        command.args([COMMAND, &std::process::id().to_string(), port]).args(later);
         command.stdin(line).stdout(orders).stderr(Stdio::null());
         // A folder that is to be unmounted would be held, and Ctrl-C of the terminal would end it with the program.
         command.current_dir("/");
@@ -87,20 +96,46 @@ impl Guardian for Second {
         Ok(Box::new(Process {
             child: Mutex::new(child),
             tell: Mutex::new(Some(tell)),
+            opens_later,
             begun_at: Instant::now(),
             told_ms: AtomicU64::new(0),
         }))
     }
 }
 
+/// The pipe to the second process. It is full when that stands still, and nobody waits for it.
 #[cfg(unix)]
-fn never_wait(pipe: &io::PipeWriter) -> io::Result<()> {
-    Ok(rustix::io::ioctl_fionbio(pipe, true)?)
+#[derive(Debug)]
+struct Tell(io::PipeWriter);
+
+#[cfg(unix)]
+impl Tell {
+    fn through(pipe: io::PipeWriter) -> io::Result<Self> {
+        rustix::io::ioctl_fionbio(&pipe, true)?;
+        Ok(Self(pipe))
+    }
+
+    /// A pipe takes so little at one go or not at all.
+    fn tell(&mut self, line: &[u8]) {
+        let _ = self.0.write_all(line);
+    }
 }
 
+/// The same where a pipe always waits: a thread does that.
 #[cfg(not(unix))]
-fn never_wait(_pipe: &io::PipeWriter) -> io::Result<()> {
-    Err(io::Error::new(io::ErrorKind::Unsupported, "this system has no second way to a port"))
+#[derive(Debug)]
+struct Tell(brushwork_link::work::Worker<Vec<u8>>);
+
+#[cfg(not(unix))]
+impl Tell {
+    fn through(mut pipe: io::PipeWriter) -> io::Result<Self> {
+        let write = move |line: Vec<u8>| drop(pipe.write_all(&line));
+        Ok(Self(brushwork_link::work::Worker::start("guardian", WAITING_ORDERS, write)))
+    }
+
+    fn tell(&mut self, line: &[u8]) {
+        let _ = self.0.give(line.to_vec());
+    }
 }
 
 #[cfg(unix)]
@@ -109,14 +144,24 @@ fn apart(command: &mut Command) {
     command.process_group(0);
 }
 
-#[cfg(not(unix))]
+#[cfg(windows)]
+fn apart(command: &mut Command) {
+    use std::os::windows::process::CommandExt as _;
+    /// `CREATE_NEW_PROCESS_GROUP` and `CREATE_NO_WINDOW`: neither Ctrl-C of the first one's console nor its closing reaches it.
+    const APART: u32 = 0x0000_0200 | 0x0800_0000;
+    command.creation_flags(APART);
+}
+
+#[cfg(not(any(unix, windows)))]
 fn apart(_command: &mut Command) {}
 
 /// The second process of one line.
 #[derive(Debug)]
 struct Process {
     child: Mutex<Child>,
-    tell: Mutex<Option<io::PipeWriter>>,
+    tell: Mutex<Option<Tell>>,
+    /// It can do nothing while this process has the port.
+    opens_later: bool,
     begun_at: Instant,
     /// When it was last told that the program lives, ms after its begin.
     told_ms: AtomicU64,
@@ -126,9 +171,9 @@ impl Process {
     fn tell(&self, order: &Order) {
         let Ok(mut line) = serde_json::to_vec(order) else { return };
         line.push(b'\n');
-        let tell = self.tell.lock().unwrap_or_else(PoisonError::into_inner);
-        // A pipe takes so little at one go or not at all. It is full when the second process stands still, which no order mends.
-        let _ = tell.as_ref().map(|mut tell| tell.write_all(&line));
+        if let Some(tell) = self.tell.lock().unwrap_or_else(PoisonError::into_inner).as_mut() {
+            tell.tell(&line);
+        }
     }
 }
 
@@ -163,17 +208,49 @@ impl LineGuard for Process {
 
 impl Drop for Process {
     fn drop(&mut self) {
+        if self.opens_later {
+            self.release();
+        }
         // The closed pipe is the end of it. It has the port, which can be opened again only when it is gone.
         drop(self.tell.lock().unwrap_or_else(PoisonError::into_inner).take());
         let _ = self.child.lock().unwrap_or_else(PoisonError::into_inner).wait();
     }
 }
 
-/// What the second process does for all its life. `is_dying` tells whether the first one runs no code of its own any more, where the system says
+/// A port that the first process has to itself as long as it lives, as the second one opens it then.
+pub struct Later(Box<dyn Transport>);
+
+impl Later {
+    /// Opens it as soon as it is free.
+    #[must_use]
+    pub fn open(target: &ConnectTarget) -> Option<Self> {
+        let until = Instant::now() + FREE_LIMIT;
+        loop {
+            match target.open() {
+                Ok(port) => return Some(Self(port)),
+                Err(_) if Instant::now() < until => std::thread::sleep(TRY_AGAIN),
+                // There is nobody to tell.
+                Err(_) => return None,
+            }
+        }
+    }
+}
+
+impl Write for Later {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.write(bytes).map(|()| bytes.len()).map_err(io::Error::other)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// What the second process does for all its life. `line` is asked for when the stop is to be written. `is_dying` tells whether the first one runs no code of its own any more, where the system says
 /// so before its pipe closes; `end_first` ends it, if it is there still.
-pub fn stand_guard(
+pub fn stand_guard<L: Write>(
     orders: impl Read + Send + 'static,
-    mut line: impl Write,
+    line: impl FnOnce() -> Option<L>,
     is_dying: impl Fn() -> bool,
     end_first: impl FnOnce(),
 ) {
@@ -224,6 +301,7 @@ pub fn stand_guard(
         }
     }
     let Some((writes, gap)) = held else { return };
+    let Some(mut line) = line() else { return };
     let died_at = Instant::now();
     for at in STOP_AT {
         std::thread::sleep((died_at + at).saturating_duration_since(Instant::now()));
@@ -265,7 +343,12 @@ mod tests {
 
     fn written(orders: &[Order]) -> Vec<u8> {
         let mut line = Vec::new();
-        stand_guard(io::Cursor::new(lines(orders)), &mut line, || false, || panic!("it is dead already"));
+        stand_guard(
+            io::Cursor::new(lines(orders)),
+            || Some(&mut line),
+            || false,
+            || panic!("it is dead already"),
+        );
         line
     }
 
@@ -289,7 +372,7 @@ mod tests {
         let (orders, mut tell) = io::pipe().unwrap();
         tell.write_all(&lines(&[hold(1), Order::Moving(true), Order::Lives])).unwrap();
         let mut line = Vec::new();
-        stand_guard(orders, &mut line, || false, || drop(tell));
+        stand_guard(orders, || Some(&mut line), || false, || drop(tell));
         assert_eq!(line, [1, 1, 0xff].repeat(STOP_AT.len()));
     }
 
@@ -298,7 +381,7 @@ mod tests {
         let (orders, mut tell) = io::pipe().unwrap();
         tell.write_all(&lines(&[hold(1), Order::Moving(true)])).unwrap();
         let mut line = Vec::new();
-        stand_guard(orders, &mut line, || true, || panic!("whoever dies needs no end"));
+        stand_guard(orders, || Some(&mut line), || true, || panic!("whoever dies needs no end"));
         assert_eq!(line, [1, 1, 0xff].repeat(STOP_AT.len()));
         drop(tell);
     }

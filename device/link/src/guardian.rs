@@ -4,16 +4,16 @@
 //! how it is told stands where processes may be started; this crate knows the two traits.
 
 use crate::device::StopBytes;
+use crate::transport::SecondWay;
 use std::fmt;
-use std::process::Stdio;
 
 /// Starts guards.
 pub trait Guardian: Send + Sync + fmt::Debug {
-    /// Starts one for the line that `port` names; `line` writes to it.
+    /// Starts one for the line that `port` names; `line` is its way to it.
     ///
     /// # Errors
     /// What the system said.
-    fn start(&self, port: &str, line: Stdio) -> std::io::Result<Box<dyn LineGuard>>;
+    fn start(&self, port: &str, line: SecondWay) -> std::io::Result<Box<dyn LineGuard>>;
 }
 
 /// The guard of one line. Dropping it without [`release`](LineGuard::release) is a death to it. Telling it something never waits.

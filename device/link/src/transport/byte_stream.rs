@@ -40,13 +40,22 @@ pub trait Transport: Send {
         Duration::from_millis(60)
     }
 
-    /// Another way to write to the same far end, for a second process, which has it as its standard input.
+    /// Another way to write to the same far end, for a second process.
     ///
     /// # Errors
     /// There is none, or the system gave none.
-    fn second_way(&self) -> io::Result<Stdio> {
+    fn second_way(&self) -> io::Result<SecondWay> {
         Err(io::Error::new(io::ErrorKind::Unsupported, "a line of this kind is open to one program alone"))
     }
+}
+
+/// Another way to write to a far end, for a second process.
+#[derive(Debug)]
+pub enum SecondWay {
+    /// The line is open for it, as its standard input.
+    Open(Stdio),
+    /// The system opens such a line to one process at a time: when the first one is gone, this target leads there.
+    Later(String),
 }
 
 /// Why bytes could not be moved. Every one of these means that the link is lost.

@@ -45,7 +45,7 @@ impl Transport for Late {
         self.latency
     }
 
-    fn second_way(&self) -> std::io::Result<std::process::Stdio> {
+    fn second_way(&self) -> std::io::Result<super::SecondWay> {
         self.inner.second_way()
     }
 }

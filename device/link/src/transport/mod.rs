@@ -15,7 +15,7 @@ mod stream;
 pub mod target;
 pub mod tcp;
 
-pub use byte_stream::{Transport, TransportError, WRITE_TIMEOUT};
+pub use byte_stream::{SecondWay, Transport, TransportError, WRITE_TIMEOUT};
 pub use channel::ChannelTransport;
 pub use error::{OpenError, TargetError};
 pub use port_info::PortInfo;

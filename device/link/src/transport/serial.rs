@@ -1,12 +1,10 @@
 //! Serial ports and pseudo-terminals. Only this file and that of the list know the `serialport` crate.
 
-use super::byte_stream::{Transport, TransportError, WRITE_TIMEOUT};
+use super::byte_stream::{SecondWay, Transport, TransportError, WRITE_TIMEOUT};
 use super::error::OpenError;
 use super::refused;
 use serialport::{ClearBuffer, ErrorKind, SerialPort};
 use std::io;
-#[cfg(unix)]
-use std::process::Stdio;
 use std::time::Duration;
 
 /// An open serial port: eight data bits, no parity, one stop bit, no flow control.
@@ -102,11 +100,17 @@ impl Transport for SerialTransport {
     }
 
     #[cfg(unix)]
-    fn second_way(&self) -> io::Result<Stdio> {
+    fn second_way(&self) -> io::Result<SecondWay> {
         match &self.second {
-            Ok(file) => Ok(file.try_clone()?.into()),
+            Ok(file) => Ok(SecondWay::Open(file.try_clone()?.into())),
             Err(error) => Err(io::Error::new(error.kind(), error.to_string())),
         }
+    }
+
+    #[cfg(not(unix))]
+    fn second_way(&self) -> io::Result<SecondWay> {
+        let baud = self.port.baud_rate().map_err(io::Error::from)?;
+        Ok(SecondWay::Later(format!("{},baud={baud}", self.path)))
     }
 }
 

@@ -3,12 +3,10 @@
 //! A named thread reads, so that waiting for a byte has the resolution of a channel and not that of
 //! a socket time-out (which some systems round up to several milliseconds).
 
-use super::byte_stream::{Transport, TransportError, WRITE_TIMEOUT};
+use super::byte_stream::{SecondWay, Transport, TransportError, WRITE_TIMEOUT};
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 use std::io::{self, Read, Write};
 use std::net::{Shutdown, TcpStream, ToSocketAddrs};
-#[cfg(unix)]
-use std::process::Stdio;
 use std::thread::JoinHandle;
 use std::time::Duration;
 
@@ -122,8 +120,14 @@ impl Transport for TcpTransport {
     }
 
     #[cfg(unix)]
-    fn second_way(&self) -> io::Result<Stdio> {
-        Ok(std::os::fd::OwnedFd::from(self.stream.try_clone()?).into())
+    fn second_way(&self) -> io::Result<SecondWay> {
+        Ok(SecondWay::Open(std::os::fd::OwnedFd::from(self.stream.try_clone()?).into()))
+    }
+
+    /// A socket is no file there.
+    #[cfg(not(unix))]
+    fn second_way(&self) -> io::Result<SecondWay> {
+        Ok(SecondWay::Later(self.name.clone()))
     }
 }
 

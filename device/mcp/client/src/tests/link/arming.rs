@@ -11,12 +11,11 @@ use brushwork_link::device::StopBytes;
 use brushwork_link::device::{ArmScope, Drive, DriveCommand};
 use brushwork_link::device::{DisarmReason, Event};
 use brushwork_link::guardian::{Guardian, LineGuard};
-use brushwork_link::transport::Stream;
+use brushwork_link::transport::{SecondWay, Stream};
 use brushwork_mcp_wire::packet_serial::number;
 use brushwork_values::{Motor, Value};
 use std::collections::BTreeSet;
 use std::io;
-use std::process::Stdio;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
@@ -536,7 +535,7 @@ impl Told {
 }
 
 impl Guardian for Told {
-    fn start(&self, _port: &str, _line: Stdio) -> io::Result<Box<dyn LineGuard>> {
+    fn start(&self, _port: &str, _line: SecondWay) -> io::Result<Box<dyn LineGuard>> {
         self.note("start");
         Ok(Box::new(self.clone()))
     }
@@ -594,7 +593,7 @@ fn a_guard_knows_the_stop_before_anything_may_move_and_is_released_when_nothing_
 struct Nobody;
 
 impl Guardian for Nobody {
-    fn start(&self, _port: &str, _line: Stdio) -> io::Result<Box<dyn LineGuard>> {
+    fn start(&self, _port: &str, _line: SecondWay) -> io::Result<Box<dyn LineGuard>> {
         Err(io::Error::other("too many processes"))
     }
 }

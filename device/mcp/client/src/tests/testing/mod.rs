@@ -6,7 +6,7 @@
 pub mod unit;
 
 use brushwork_link::clock::{Clock, VirtualClock};
-use brushwork_link::transport::{Transport, TransportError};
+use brushwork_link::transport::{SecondWay, Transport, TransportError};
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -166,8 +166,8 @@ impl Transport for ScriptedTransport {
         ms(50)
     }
 
-    fn second_way(&self) -> std::io::Result<std::process::Stdio> {
-        Ok(std::process::Stdio::null())
+    fn second_way(&self) -> std::io::Result<SecondWay> {
+        Ok(SecondWay::Open(std::process::Stdio::null()))
     }
 }
 
