@@ -12,7 +12,7 @@ use brushwork_tests::served::{Served, mcp, motion_mind};
 use brushwork_tests::simulated::{OnPty, is_driven};
 use brushwork_tests::wait::{self, LIMIT};
 
-use crate::guardian::driving as driving_on;
+use crate::guardian::{TRIES, driving as driving_on};
 
 const BRUSHWORK: &str = env!("CARGO_BIN_EXE_brushwork-for-tests");
 const DONE: i32 = 0;
@@ -36,7 +36,10 @@ fn assert_off<M: Machine>(served: &Served<M>) {
 
 /// The holder says who stopped it, and ends as something does that a safety rule ended.
 fn assert_was_told(holder: Program) {
-    let ending = holder.finish(LIMIT);
+    assert_says_who_stopped(&holder.finish(LIMIT));
+}
+
+fn assert_says_who_stopped(ending: &Ending) {
     assert_eq!(ending.status.code(), Some(REFUSED), "{ending:?}");
     assert_eq!(ending.stderr.iter().filter(|line| *line == STOPPED).count(), 1, "{ending:?}");
 }
@@ -104,22 +107,28 @@ fn driving(port: &Path, controller: &OnPty) -> Program {
 #[test]
 fn units_that_the_other_program_has_not_looked_for_are_stopped_too() {
     let controller = OnPty::line(&[0x80, 0x83]);
-    controller.set_all_going();
     let target = format!("{},stream=ttl1", controller.port().display());
     let words = ["drive", "-c", &target, "--address", "0x80", "--motor", "1", "--duty", "40", "--for", "600"];
-    let mut drive = Program::start(BRUSHWORK, &words);
-    drive.next_line(LIMIT);
-    let ending = stop(&target, &[]);
-    wait::until(
-        "motors off",
-        || controller.driven() == [false, false],
-        || format!("{:?}", controller.driven()),
-    );
+    let stopped = || {
+        controller.set_all_going();
+        let mut drive = Program::start(BRUSHWORK, &words);
+        drive.next_line(LIMIT);
+        let ending = stop(&target, &[]);
+        wait::until(
+            "motors off",
+            || controller.driven() == [false, false],
+            || format!("{:?}", controller.driven()),
+        );
+        (ending, drive.finish(LIMIT))
+    };
+    // A drive that has ended before, since this machine is too crowded for it or for the controller, has nothing to say.
+    let has_driven = |(_, drive): &(Ending, Ending)| !drive.was_starved() && !drive.found_silence();
+    let (ending, drive) = (0..TRIES).map(|_| stopped()).find(has_driven).expect("a machine with some room");
     assert_eq!(ending.status.code(), Some(DONE), "{ending:?}");
     let others =
         "The stop was written to 0x81 to 0x87 too, where that program may not have looked for units.";
     assert!(ending.stderr.iter().any(|line| line == others), "{ending:?}");
-    assert_was_told(drive);
+    assert_says_who_stopped(&drive);
 }
 
 #[test]
