@@ -10,6 +10,9 @@ use crate::screens::messages::ScreenMessage;
 use crate::theme::Palette;
 use crate::tune::{Loop, guide};
 
+/// What the events have of the status's height above its graph.
+const EVENTS_PART: f32 = 0.4;
+
 /// The place of a screen that needs a controller.
 pub fn offline_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     let is_closed = model.front.phase == Phase::Closed;
@@ -32,8 +35,12 @@ pub fn offline_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     band_ui(ui, model, commands);
     ui.add_space(6.0);
     if model.screen == Screen::DeviceStatus {
-        let height = ui.available_height();
-        return status::history_ui(ui, &mut model.front.history, height);
+        let has_samples = !model.front.graph.live.track.history.is_empty();
+        let height = ui.available_height() * if has_samples { EVENTS_PART } else { 1.0 };
+        status::history_ui(ui, &mut model.front.history, height);
+        if !has_samples {
+            return;
+        }
     }
     graph_place_ui(ui, model, commands);
 }

@@ -88,6 +88,7 @@ fn a_lost_link_leaves_the_graph_under_a_band_and_connecting_again_arms_nothing()
     bench.press("Device Status");
     assert!(bench.sees_part("Link lost"), "the same band above what happened");
     assert!(bench.sees("EVENT HISTORY"));
+    assert!(bench.sees_part("Live graph of the last"), "and below that the graph, here too");
     bench.press("PWM Settings");
     bench.act(&WorldAction::Unplug { unplugged: false });
     bench.press("Connect to sim:mcp266 again");
