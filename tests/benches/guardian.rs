@@ -37,6 +37,8 @@ mod killing {
     const NEVER: Duration = Duration::from_secs(5);
     /// A window has opened on a controller when so much is green.
     const GREEN_OF_INDICATORS: usize = 100;
+    /// How often a program is started that finds the machine too crowded to drive.
+    const TRIES: usize = 20;
     /// How long the device thread may take to arm.
     const ARMING: Duration = Duration::from_millis(1500);
     /// Moments of an attack lie so far apart within a run, in so many steps.
@@ -237,8 +239,31 @@ mod killing {
 
     /// One attack, at a moment that depends on its turn.
     fn once<M: Machine + 'static>(served: &Served<M>, attack: Attack, turn: u32) -> Option<Off> {
+        let (step, moments) = MOMENTS;
+        let drives = |program: &mut Program| {
+            let drives_or_ended = || served.look().0 || !program.is_running();
+            wait::until("a driven motor, or the end", drives_or_ended, || "it stands".to_owned());
+            program.is_running()
+        };
+        let begun = (0..TRIES).map(|_| begin(served, attack)).find_map(|(mut program, screen)| {
+            let lives = drives(&mut program) && {
+                thread::sleep(step * (turn % moments));
+                drives(&mut program)
+            };
+            lives.then_some((program, screen))
+        });
+        let (program, screen) = begun.expect("a machine with room for a program that drives");
+        let strike = || match (&screen, attack) {
+            (Some(screen), Attack::Display) => screen.kill(),
+            (Some(_) | None, _) => program.signal("KILL"),
+        };
+        served.off_after(strike, NEVER)
+    }
+
+    /// Starts what is attacked.
+    fn begin<M: Machine + 'static>(served: &Served<M>, attack: Attack) -> (Program, Option<Screen>) {
         let target = served.target.as_str();
-        let (program, screen) = match attack {
+        match attack {
             Attack::Drive => {
                 let words = ["drive", "-c", target, "--motor", "1", "--duty", "40", "--for", "600"];
                 (Program::start(BRUSHWORK, &words), None)
@@ -250,17 +275,7 @@ mod killing {
                 let (window, screen) = driving_window(served);
                 (window, Some(screen))
             }
-        };
-        let driven = || wait::until("a driven motor", || served.look().0, || "it stands".to_owned());
-        driven();
-        let (step, moments) = MOMENTS;
-        thread::sleep(step * (turn % moments));
-        driven();
-        let strike = || match (&screen, attack) {
-            (Some(screen), Attack::Display) => screen.kill(),
-            (Some(_) | None, _) => program.signal("KILL"),
-        };
-        served.off_after(strike, NEVER)
+        }
     }
 
     /// A window whose slider was moved by keys.
