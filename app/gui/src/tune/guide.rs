@@ -77,8 +77,10 @@ fn go_to_result(ui: &Ui, front: &Connection, which: Loop) {
 pub fn found_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Commands) {
     region_ui(ui, Region::Result);
     let room = ui.available_rect_before_wrap();
+    // Each run has a place of its own to be scrolled to, so that a new one is seen from its verdict on.
+    let place = ("tune", model.front.tune.front(which).run().map(|run| run.number));
     if room.width() < SIDE_BY_SIDE {
-        ScrollArea::vertical().id_salt("tune").auto_shrink(false).show(ui, |ui| {
+        ScrollArea::vertical().id_salt(place).auto_shrink(false).show(ui, |ui| {
             result::result_ui(ui, model, which, commands);
             let (place, _) =
                 ui.allocate_exact_size(vec2(ui.available_width(), PICTURE_HEIGHT), egui::Sense::hover());
@@ -88,7 +90,7 @@ pub fn found_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Comm
     }
     let (left, right) = room.split_left_right_at_x(room.left() + LEFT_WIDTH);
     part_ui(ui, left, |ui| {
-        ScrollArea::vertical().id_salt("tune").auto_shrink(false).show(ui, |ui| {
+        ScrollArea::vertical().id_salt(place).auto_shrink(false).show(ui, |ui| {
             ui.set_max_width(LEFT_WIDTH - 14.0);
             result::result_ui(ui, model, which, commands);
         });

@@ -22,7 +22,7 @@ use brushwork_tuning::tune::Identification;
 use brushwork_tuning::winding::{Winding, WindingUnknown};
 use brushwork_values::Motor;
 use egui::{Key, Modifiers};
-use egui_kittest::kittest::NodeT as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
 fn config(preset: &str) -> ControllerConfig {
     let axis = presets::lookup(preset).expect("a preset");
@@ -473,6 +473,10 @@ fn a_refusal_before_anything_moves_says_that_there_is_nothing_to_see() {
 #[test]
 fn a_report_is_saved_as_the_command_line_writes_it_and_opened_again() {
     let mut bench = tuned("Velocity Settings", Loop::Velocity);
+    let verdict_top = |bench: &Bench, run: usize| {
+        bench.harness.get_by_label_contains(&format!("· run {run} ·")).rect().top()
+    };
+    let top = verdict_top(&bench, 1);
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("run.json");
     bench.model().front.tune.path = path.display().to_string();
@@ -491,9 +495,11 @@ fn a_report_is_saved_as_the_command_line_writes_it_and_opened_again() {
     assert!(bench.said().iter().any(|text| text.contains("already")), "{:?}", bench.said());
     std::fs::remove_file(&path).expect("it is there");
     press_below(&mut bench, "Save report");
+    assert!(verdict_top(&bench, 1) < top, "its end was looked at");
     press_below(&mut bench, "Open report");
     bench.pass_ms(300);
     assert_eq!(bench.model().front.tune.front(Loop::Velocity).runs.len(), 2);
+    assert_eq!(verdict_top(&bench, 2), top, "a new result is seen from its verdict on");
     assert_eq!(run(&mut bench, Loop::Velocity).report, saved);
 }
 
