@@ -11,6 +11,7 @@ use crate::model::{GeneralView, Gravity, IndicatorState, LinkView};
 use crate::screens::drive::{arm_ui, notices_ui};
 use crate::screens::general::sheet_parts::indicator_ui;
 use crate::widgets::numeric::Numeric;
+use crate::widgets::with_time_left;
 use brushwork_core::motion::clamp::Step;
 
 const WHAT_IT_DOES: &str = "Runs the motor up to 25 % and slows it down quickly, then 5 % more each time up to 100 %, while \
@@ -111,10 +112,11 @@ fn run_ui(ui: &mut Ui, general: &GeneralView<'_>, link: &LinkView, commands: &mu
                 commands.push(Command::Guided(GuidedAction::Cancel));
             }
             let volts = link.readings.get(Channel::MAIN_BATTERY).unwrap_or(f64::NAN);
+            let text = with_time_left(ui, "clamp test", fraction, &text.to_string());
             let bar = ProgressBar::new(fraction).desired_width(ui.available_width());
             let response =
-                ui.add(bar.text(McpScreenMessage::WithBattery { text: text.to_string(), volts }.to_string()));
-            let spoken = McpScreenMessage::ClampProgress { text: text.to_string() }.to_string();
+                ui.add(bar.text(McpScreenMessage::WithBattery { text: text.clone(), volts }.to_string()));
+            let spoken = McpScreenMessage::ClampProgress { text }.to_string();
             response.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, &spoken));
             return;
         }

@@ -14,7 +14,7 @@ use crate::mcp::messages::{DownloadMessage, McpScreenMessage};
 use crate::mcp::model::firmware::{Firmware, FirmwareAction, LISTED, Stage};
 use crate::model::{Model, Sheet};
 use crate::theme::Palette;
-use crate::widgets::{choice_ui, heading_ui, text_field_ui};
+use crate::widgets::{choice_ui, heading_ui, text_field_ui, with_time_left};
 use brushwork_core::update::Compared;
 use brushwork_core::words::capital;
 
@@ -156,7 +156,7 @@ fn resumed_ui(ui: &mut Ui, firmware: &mut Firmware) {
 
 fn running_ui(ui: &mut Ui, stage: &Stage, commands: &mut Commands) {
     let (text, share) = stage.reported();
-    ui.strong(&text);
+    ui.strong(share.map_or_else(|| text.clone(), |share| with_time_left(ui, "firmware", share, &text)));
     let bar = ProgressBar::new(share.unwrap_or(0.0)).desired_height(18.0);
     ui.add(if share.is_some() { bar.show_percentage() } else { bar });
     let harmless = stage.can_be_cancelled();
