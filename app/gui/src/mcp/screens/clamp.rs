@@ -112,7 +112,7 @@ fn run_ui(ui: &mut Ui, general: &GeneralView<'_>, link: &LinkView, commands: &mu
                 commands.push(Command::Guided(GuidedAction::Cancel));
             }
             let volts = link.readings.get(Channel::MAIN_BATTERY).unwrap_or(f64::NAN);
-            let text = with_time_left(ui, "clamp test", fraction, &text.to_string());
+            let text = with_time_left(ui, "clamp test", fraction, text);
             let bar = ProgressBar::new(fraction).desired_width(ui.available_width());
             let response =
                 ui.add(bar.text(McpScreenMessage::WithBattery { text: text.clone(), volts }.to_string()));
