@@ -208,6 +208,7 @@ impl LineGuard for Process {
 
 impl Drop for Process {
     fn drop(&mut self) {
+        // Nor could it write a last stop, and it would wait for the port that is about to be closed.
         if self.opens_later {
             self.release();
         }
@@ -246,8 +247,8 @@ impl Write for Later {
     }
 }
 
-/// What the second process does for all its life. `line` is asked for when the stop is to be written. `is_dying` tells whether the first one runs no code of its own any more, where the system says
-/// so before its pipe closes; `end_first` ends it, if it is there still.
+/// What the second process does for all its life. `line` is asked for when the stop is to be written. `is_dying` tells whether the first one runs no
+/// code of its own any more, where the system says so before its pipe closes; `end_first` ends it, if it is there still.
 pub fn stand_guard<L: Write>(
     orders: impl Read + Send + 'static,
     line: impl FnOnce() -> Option<L>,

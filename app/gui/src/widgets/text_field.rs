@@ -46,7 +46,7 @@ pub fn refuse_long_paste(ctx: &Context) -> Option<(usize, usize)> {
     let mut refused = None;
     ctx.input_mut(|input| {
         input.events.retain(|event| match event {
-            Event::Paste(text) | Event::Text(text) if text.len() > most => {
+            Event::Paste(text) if text.len() > most => {
                 refused = Some((text.len(), most));
                 false
             }

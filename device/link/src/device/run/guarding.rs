@@ -40,7 +40,7 @@ impl DeviceLoop {
         self.held = held;
     }
 
-    /// The link ends. A guard that still holds something writes its bytes once more, which harms nothing.
+    /// The link ends. A guard that still holds something, and has the port, writes its bytes once more, which harms nothing.
     pub(super) fn dismiss_guard(&mut self) {
         self.signals.set_guard(None);
     }
