@@ -75,6 +75,9 @@ struct LagWidths {
 const WIDTHS: LagWidths =
     LagWidths { deviations: 2.0, unmodelled: (0.0004, 0.15), loud_duty: 0.25, likely: 4.0 };
 
+/// Misfit of the closed loop from which on its lag is not all that there may be: a springy joint of seed 905 of the bench that was called tuned at a true Ms of 1.9 has 1.32,
+/// rigid motors up to 1.26.
+const UNEXPLAINED: f64 = 1.25;
 /// Where the fit starts: filter, s, and delay, ticks.
 const STARTS: [(f64, f64); 4] = [(0.001, 0.2), (0.006, 0.2), (0.001, 1.2), (0.010, 1.0)];
 /// Units of the parameters, and the steps by which slopes are taken, in those.
@@ -141,6 +144,14 @@ pub struct LagFit {
     pub tau_scale: f64,
     /// Reduced chi-square of the best.
     pub chi_square: f64,
+}
+
+impl LagFit {
+    /// Whether the closed loop did what no lag explains, such as a springy shaft does.
+    #[must_use]
+    pub fn is_unexplained(&self) -> bool {
+        self.chi_square > UNEXPLAINED
+    }
 }
 
 /// Some seconds of a loop under known gains.

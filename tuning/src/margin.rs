@@ -35,7 +35,7 @@ const TOO_ROUGH: f64 = 2.0;
 const LEAST_ROUGH: f64 = 0.012;
 
 /// The highest sensitivity of gains that are given without a warning (Astrom and Murray, "Feedback Systems", 2nd edition, section 10.3: 1.2 to 2 are reasonable).
-const MOST_MS: f64 = 1.8;
+pub(crate) const MOST_MS: f64 = 1.8;
 
 /// A duty that is beyond the bound so many times over needs no second look.
 const AT_ONCE: f64 = 4.0;

@@ -6,6 +6,7 @@ use crate::experiment::{Backlash, FreeRun, Probe, RelayRun, StepRun, WindowRun};
 use crate::fit::Fit;
 use crate::lag::LagFit;
 use crate::law::Law;
+use crate::promise::Promise;
 use crate::record::Entry;
 use crate::request::Request;
 use crate::rules::Classic;
@@ -114,6 +115,12 @@ pub struct Report<L: Law> {
 }
 
 impl<L: Law> Report<L> {
+    /// What the gains of this run promise, as ranges; `None` where it found none.
+    #[must_use]
+    pub fn promise(&self) -> Option<Promise> {
+        Some(Promise::of(&self.task?, &self.design?.gains, &self.fit?, self.lag.as_ref()))
+    }
+
     /// The trapezoid that the motor follows with the gains of this run; `None` where it has none.
     #[must_use]
     pub fn trajectory(&self) -> Option<Trajectory> {

@@ -17,6 +17,8 @@ pub struct Settled {
     pub tau_s: f64,
     /// Speed over the last quarter, counts/s.
     pub tail_speed: f64,
+    /// By how much the speed at the last point still differs from the one it settles at, as the fit has it, over that one.
+    pub remaining: f64,
 }
 
 /// Time constants tried, s: lowest, highest, how many.
@@ -34,14 +36,16 @@ pub fn settled(points: &[Point]) -> Option<Settled> {
     let quarter = &points[points.len() * 3 / 4..];
     let tail_speed = slope(quarter)?;
     let sigma2 = 0.17 + (STAMP_S * tail_speed).powi(2);
-    let mut best: Option<(f64, f64, f64, f64)> = None;
+    let mut best: Option<(f64, f64, f64, f64, f64)> = None;
     let mut all = Vec::new();
-    let mut tried = |tau: f64, best: &mut Option<(f64, f64, f64, f64)>| {
-        let Some((speed, variance, error)) = fit(points, first.t, tau, last.t - first.t) else { return };
+    let mut tried = |tau: f64, best: &mut Option<(f64, f64, f64, f64, f64)>| {
+        let Some((speed, variance, error, remaining)) = fit(points, first.t, tau, last.t - first.t) else {
+            return;
+        };
         let cost = error / sigma2;
         all.push((speed, variance * sigma2, cost));
         if best.is_none_or(|b| cost < b.3) {
-            *best = Some((speed, variance * sigma2, tau, cost));
+            *best = Some((speed, variance * sigma2, tau, cost, remaining));
         }
     };
     let ratio = GRID.1 / GRID.0;
@@ -57,14 +61,15 @@ pub fn settled(points: &[Point]) -> Option<Settled> {
             tried(centre * spacing.powi(n), &mut best);
         }
     }
-    let (speed, variance, tau_s, cost) = best?;
+    let (speed, variance, tau_s, cost, remaining) = best?;
     let scale = (cost / (points.len() as f64 - 3.0)).max(1.0);
     let spread = all
         .iter()
         .filter(|other| other.2 < cost + 4.0 * scale)
         .map(|other| (other.0 - speed).abs() + 2.0 * (other.1 * scale).sqrt())
         .fold(2.0 * (variance * scale).sqrt(), f64::max);
-    Some(Settled { speed, interval: spread / speed.abs().max(1e-9), tau_s, tail_speed })
+    let share = |of: f64| of / speed.abs().max(1e-9);
+    Some(Settled { speed, interval: share(spread), tau_s, tail_speed, remaining: share(remaining) })
 }
 
 /// Least-squares slope of counts over time.
@@ -81,8 +86,8 @@ pub fn slope(points: &[Point]) -> Option<f64> {
     (sxx > 0.0).then(|| sxy / sxx)
 }
 
-/// (final speed, its variance per unit of error variance, sum of squared errors) for one time constant.
-fn fit(points: &[Point], t0: f64, tau: f64, span: f64) -> Option<(f64, f64, f64)> {
+/// (final speed, its variance per unit of error variance, sum of squared errors, speed still missing at the end) for one time constant.
+fn fit(points: &[Point], t0: f64, tau: f64, span: f64) -> Option<(f64, f64, f64, f64)> {
     let mut normal = Matrix3::zeros();
     let mut right = Vector3::zeros();
     let row = |p: &Point| Vector3::new(1.0, (p.t - t0) / span, 1.0 - (-(p.t - t0) / tau).exp());
@@ -94,7 +99,8 @@ fn fit(points: &[Point], t0: f64, tau: f64, span: f64) -> Option<(f64, f64, f64)
     let inverse = normal.try_inverse()?;
     let q = inverse * right;
     let error = points.iter().map(|p| (p.counts - row(p).dot(&q)).powi(2)).sum();
-    Some((q[1] / span, inverse[(1, 1)].abs() / (span * span), error))
+    let remaining = (q[2] / tau * (-span / tau).exp()).abs();
+    Some((q[1] / span, inverse[(1, 1)].abs() / (span * span), error, remaining))
 }
 
 #[cfg(test)]

@@ -216,7 +216,7 @@ messages! {
         NotInTime "The run did not end in its time.",
         OtherRecord { file: String, entry: usize, of: usize } "The record in {file} does not belong to this version of the tuner, or was changed: at its entry {entry} of {of} the tuner asks for another step. Tune again.",
         SameResult "The replay gives the same result to the last bit.",
-        OtherResult { file: String, parts: String } "The replay gives another result than {file} holds: it differs in {parts}. The report was changed, or was made on another kind of computer.",
+        OtherResult { file: String, parts: String } "The replay gives another result than {file} holds: it differs in {parts}. The report was changed, or was made by another version of the tuner or on another kind of computer.",
     }
 }
 

@@ -89,6 +89,18 @@ pub struct Identification {
     pub lag_inside: f64,
     /// Whole width of that interval, median, ms.
     pub lag_width_ms: f64,
+    /// Runs whose interval of the friction holds it, %.
+    pub friction_inside: f64,
+    /// Whole width of that interval, median, % duty.
+    pub friction_width: f64,
+    /// Runs whose range of the maximum sensitivity holds the true one, %.
+    pub ms_inside: f64,
+    /// Whole width of that range, median.
+    pub ms_width: f64,
+    /// Runs whose range of the settling time holds the one of a trial, %.
+    pub settling_inside: f64,
+    /// Whole width of that range over the likely settling time, median, %.
+    pub settling_width: f64,
     /// Predicted against true maximum sensitivity of the velocity loop.
     pub ms_error_p95: f64,
     /// Maximum sensitivity of our velocity loop at half or half as much more inertia.
@@ -295,13 +307,32 @@ fn row<'a>(method: &str, judged: impl Iterator<Item = &'a Judged>) -> Row {
 fn identification<U: Unit>(cases: &[Case<U>], reports: &[(Report<U>, f64)]) -> Identification {
     let found =
         || cases.iter().zip(reports).map(|(case, (report, peak))| (&case.under_test.truth, report, *peak));
-    let ms = cases.iter().zip(reports).filter_map(|(case, (report, _))| {
-        let under_test = &case.under_test;
-        let proposed = Some(&report.proposed).filter(|proposed| **proposed != Registers::<U>::default())?;
-        let (margins, _) = linear(&under_test.truth.nominal, under_test, Method::Velocity, proposed);
-        Some((margins.ms - report.design?.ms).abs())
-    });
-    window_summary(identification_of(found(), &ms.collect::<Vec<_>>()), &window_runs(cases))
+    let kept = |(case, (report, _)): (&Case<U>, &(Report<U>, f64))| kept(&case.under_test, report);
+    let kept: Vec<Kept> = cases.par_iter().zip(reports).filter_map(kept).collect();
+    window_summary(identification_of(found(), &kept), &window_runs(cases))
+}
+
+/// What gains promised and what the true plant made of it.
+struct Kept {
+    ms_error: f64,
+    /// Whether the range held the truth, and its width.
+    ms: (bool, f64),
+    /// The same, the width over the likely value.
+    settling: (bool, f64),
+}
+
+fn kept<U: Unit>(under_test: &UnderTest<U>, report: &Report<U>) -> Option<Kept> {
+    let proposed = Some(&report.proposed).filter(|proposed| **proposed != Registers::<U>::default())?;
+    let (design, promise) = (report.design?, report.promise()?);
+    let ms = linear(&under_test.truth.nominal, under_test, Method::Velocity, proposed).0.ms;
+    let settling_s = U::trial(under_test, Method::Velocity, proposed).score.settling_s;
+    let of =
+        |(low, high): (f64, f64), truth: f64, unit: f64| ((low..=high).contains(&truth), (high - low) / unit);
+    Some(Kept {
+        ms_error: (ms - design.ms).abs(),
+        ms: of(promise.ms, ms, 1.0),
+        settling: of(promise.settling_s, settling_s, design.score.settling_s.max(1e-3)),
+    })
 }
 
 fn error_percent(got: f64, wanted: f64) -> f64 {
@@ -314,11 +345,10 @@ type ErrorOf<L> = dyn Fn(&Truth<L>, &report::Report<L>) -> Option<f64>;
 /// Whether an interval of a report holds the truth.
 type HoldsOf<L> = dyn Fn(&Truth<L>, &report::Report<L>) -> Option<bool>;
 
-/// What the velocity runs found against the truth: (truth, report, peak current over the stall current) of each plant, and how far
-/// the predicted sensitivities were off.
+/// What the velocity runs found against the truth: (truth, report, peak current over the stall current) of each plant, and what became of their promises.
 fn identification_of<'a, L: Law>(
     found: impl Iterator<Item = (&'a Truth<L>, &'a report::Report<L>, f64)>,
-    ms: &[f64],
+    kept: &[Kept],
 ) -> Identification {
     let found: Vec<_> = found.collect();
     let of = |error: &ErrorOf<L>, share: f64| {
@@ -388,11 +418,27 @@ fn identification_of<'a, L: Law>(
             width(&|report| report.lag.map(|lag| 1e3 * (lag.interval_s.1 - lag.interval_s.0))),
             2,
         ),
-        ms_error_p95: round(quantile(ms.iter().copied(), 0.95), 3),
+        friction_inside: round(
+            inside(&|truth, report| {
+                let fit = report.fit?;
+                Some((fit.model.coulomb_duty - truth.coulomb_duty).abs() <= 2.0 * fit.sd_coulomb)
+            }),
+            1,
+        ),
+        friction_width: round(width(&|report| Some(400.0 * report.fit?.sd_coulomb)), 2),
+        ms_inside: share_of(kept, |kept| kept.ms.0),
+        ms_width: round(quantile(kept.iter().map(|kept| kept.ms.1), 0.5), 3),
+        settling_inside: share_of(kept, |kept| kept.settling.0),
+        settling_width: round(100.0 * quantile(kept.iter().map(|kept| kept.settling.1), 0.5), 1),
+        ms_error_p95: round(quantile(kept.iter().map(|kept| kept.ms_error), 0.95), 3),
         seconds_median: round(quantile(found.iter().map(|(_, report, _)| report.seconds.0), 0.5), 2),
         peak_current_p95: round(100.0 * quantile(found.iter().map(|(_, _, peak)| *peak), 0.95), 1),
         ..Identification::default()
     }
+}
+
+fn share_of(kept: &[Kept], holds: fn(&Kept) -> bool) -> f64 {
+    round(100.0 * kept.iter().filter(|kept| holds(kept)).count() as f64 / kept.len().max(1) as f64, 1)
 }
 
 /// With the runs inside a window: for each the error of QPPS, and the farthest reach over half the window, both in percent.

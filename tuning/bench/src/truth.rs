@@ -19,6 +19,8 @@ pub struct Truth<L: Law> {
     pub tau_s: f64,
     /// Steady speed at full duty, counts/s, battery sag included.
     pub qpps: f64,
+    /// Duty that dry friction eats while the shaft turns.
+    pub coulomb_duty: f64,
     /// The law, in the tuner's terms.
     pub law: L,
     /// Filter and delay of the firmware.
@@ -49,12 +51,20 @@ pub(crate) fn truth_under<U, L: Law>(specimen: &Specimen<U>, law: L, lag: Lag) -
         gain_counts_per_s: 10.0 * step,
         tau_s: axis.mechanical_time_constant_s(),
         qpps: full_speed(specimen),
+        coulomb_duty: coulomb_duty(specimen),
         law,
         lag,
         winding_s: axis.motor.armature_henries / ohms(specimen),
         nominal: of(1.0),
         varied: [of(0.5), of(1.5)],
     }
+}
+
+/// Friction of the turning shaft over the torque at full duty with the shaft locked.
+fn coulomb_duty<U>(specimen: &Specimen<U>) -> f64 {
+    let motor = &specimen.axis.motor;
+    let stall = motor.torque_constant_newton_metres_per_amp * specimen.axis.stall_amps(specimen.volts());
+    specimen.axis.total_friction().coulomb_newton_metres / stall
 }
 
 /// Steady speed at full duty with the battery sagging under the running current.

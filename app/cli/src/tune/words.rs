@@ -4,6 +4,7 @@ use brushwork_core::tune::law::{AnyLaw, Report};
 use brushwork_tuning::alternatives::{Alternative, Rule, alternatives};
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::law::Law;
+use brushwork_tuning::promise::Promise;
 use brushwork_tuning::registers::RegisterTable as _;
 use brushwork_tuning::report::Verdict;
 use brushwork_tuning::stability::StabilityMargins;
@@ -36,6 +37,9 @@ pub fn summary(report: &Report) -> Value {
     let mut value = serde_json::to_value(report).unwrap_or_else(|_| json!({}));
     if let Some(fields) = value.as_object_mut() {
         fields.remove("record");
+        if let Some(promise) = report.promise() {
+            fields.insert("promise".to_owned(), json!(promise));
+        }
         if let Some(trajectory) = report.trajectory() {
             fields.insert("trajectory".to_owned(), json!(trajectory));
         }
@@ -65,7 +69,8 @@ pub fn print(report: &Report, out: &mut Output) -> Result<(), OutputError> {
         let share = |sd: f64| format!("+- {:.1} %", 200.0 * sd);
         row("gain", format!("{:.0} counts/s", fit.model.gain_counts_per_s), share(fit.sd_ln_gain));
         row("time constant", format!("{:.1} ms", 1e3 * fit.model.tau_s), share(fit.sd_ln_tau));
-        row("friction", format!("{:.1} % duty", 100.0 * fit.model.coulomb_duty), String::new());
+        let friction = format!("{:.1} % duty", 100.0 * fit.model.coulomb_duty);
+        row("friction", friction, format!("+- {:.1} % duty", 200.0 * fit.sd_coulomb));
     }
     if let Some(winding) = &report.winding {
         row(
@@ -125,9 +130,15 @@ pub fn print(report: &Report, out: &mut Output) -> Result<(), OutputError> {
                 row(name, value, String::new());
             }
         }
-        row("sensitivity Ms", format!("{:.2}", design.ms), String::new());
+        let promise = report.promise();
+        let range = |of: fn(&Promise) -> String| promise.as_ref().map_or_else(String::new, of);
+        let ms = range(|promise| format!("{:.2} to {:.2}", promise.ms.0, promise.ms.1));
+        row("sensitivity Ms", format!("{:.2}", design.ms), ms);
         row("predicted overshoot", format!("{:.0} %", 100.0 * design.score.overshoot), String::new());
-        row("predicted settling", format!("{:.0} ms", 1e3 * design.score.settling_s), String::new());
+        let settling = range(|promise| {
+            format!("{:.0} to {:.0} ms", 1e3 * promise.settling_s.0, 1e3 * promise.settling_s.1)
+        });
+        row("predicted settling", format!("{:.0} ms", 1e3 * design.score.settling_s), settling);
         let measured =
             report.measured.map_or_else(String::new, |m| format!("measured {:.1} %", 100.0 * m.duty_rms));
         row("duty noise", format!("{:.1} %", 100.0 * design.noise_duty), measured);

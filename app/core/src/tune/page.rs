@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use brushwork_tuning::alternatives::alternatives;
 use brushwork_tuning::law::Law as _;
+use brushwork_tuning::promise::Promise;
 use brushwork_tuning::report::Verdict;
 use brushwork_tuning::stability::StabilityMargins;
 use brushwork_tuning::tune::Identification;
@@ -97,7 +98,8 @@ fn motor(page: &mut String, report: &Report) {
         let share = |sd: f64| format!("± {:.1} %", 200.0 * sd);
         row("Speed per duty", format!("{:.0} counts/s", fit.model.gain_counts_per_s), share(fit.sd_ln_gain));
         row("Time constant", format!("{:.1} ms", 1e3 * fit.model.tau_s), share(fit.sd_ln_tau));
-        row("Friction", format!("{:.1} % duty", 100.0 * fit.model.coulomb_duty), String::new());
+        let friction = format!("{:.1} % duty", 100.0 * fit.model.coulomb_duty);
+        row("Friction", friction, format!("± {:.1} % duty", 200.0 * fit.sd_coulomb));
     }
     if let Some(lag) = &report.lag {
         let total_s = lag.lag.total_s(report.request.law.tick_s());
@@ -139,6 +141,17 @@ fn gains(page: &mut String, report: &Report) {
     table(page, "Gains", &["", "before", "proposed", "on the wire"], &rows);
 }
 
+/// The ranges of what they promise.
+fn likely(report: &Report) -> Vec<[String; 3]> {
+    let Some(Promise { ms, settling_s }) = report.promise() else { return Vec::new() };
+    let row =
+        |name: &str, range: String| [name.to_owned(), range, "by what is known of motor and lag".to_owned()];
+    vec![
+        row("sensitivity Ms, likely", format!("{:.2} to {:.2}", ms.0, ms.1)),
+        row("settling, likely", format!("{:.0} to {:.0} ms", 1e3 * settling_s.0, 1e3 * settling_s.1)),
+    ]
+}
+
 /// What the proposed gains promise on the model, and what the rules would.
 fn promised(page: &mut String, report: &Report) {
     let (Some(task), Some(design)) = (report.task, report.design) else { return };
@@ -154,6 +167,7 @@ fn promised(page: &mut String, report: &Report) {
     ]);
     let settling = ahead.settling_s.map_or_else(|| "never".to_owned(), |s| format!("{:.0} ms", 1e3 * s));
     rows.push(["settling".into(), settling, "until a step stays within 5 % (position: 2 %)".into()]);
+    rows.extend(likely(report));
     rows.push([
         "duty noise".into(),
         format!("{:.1} %", 100.0 * design.noise_duty),

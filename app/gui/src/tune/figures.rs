@@ -2,6 +2,7 @@
 
 use egui::{Label, Response, RichText, Ui, vec2};
 
+use super::messages::RunMessage;
 use super::run::Shown;
 use crate::theme;
 
@@ -31,6 +32,18 @@ pub const FIGURES: [Figure; 5] = [
         if_stable(shown, || format!("{:.2} %", 100.0 * shown.forecast.noise_duty))
     }),
 ];
+
+/// The range that holds the true value, where a figure has one.
+pub fn likely(shown: &Shown, name: &str) -> Option<String> {
+    let promise = shown.promise.filter(|_| shown.forecast.is_stable)?;
+    let (ms, settling_s) = (promise.ms, promise.settling_s);
+    let message = match name {
+        "Settling" => RunMessage::LikelySettling { low_ms: 1e3 * settling_s.0, high_ms: 1e3 * settling_s.1 },
+        "Ms" => RunMessage::LikelySensitivity { low: ms.0, high: ms.1 },
+        _ => return None,
+    };
+    Some(message.to_string())
+}
 
 fn if_stable(shown: &Shown, text: impl FnOnce() -> String) -> String {
     if shown.forecast.is_stable { text() } else { "unstable".to_owned() }

@@ -35,7 +35,7 @@ pub use which::Loop;
 
 pub use asked::Asked;
 pub use brushwork_core::tune::sequence::{Next, Origin, Sequence, Work};
-pub use figures::{FIGURES, figure_ui};
+pub use figures::{FIGURES, figure_ui, likely};
 pub use looked_at::View;
 pub use measured::Figures;
 pub use run::Run;

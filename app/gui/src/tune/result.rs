@@ -7,7 +7,7 @@ use egui::{Button, Grid, Label, RichText, Ui, vec2};
 
 use super::files::files_ui;
 use super::winding::{unknown_ui, winding_ui};
-use super::{FIGURES, Figures, Loop, Run, TuneAction, figure_ui};
+use super::{FIGURES, Figures, Loop, Run, TuneAction, figure_ui, likely};
 use crate::command::{Command, Commands};
 use crate::family::Ability;
 use crate::model::{IndicatorState, Model, Sheet};
@@ -132,6 +132,7 @@ fn model_text(report: &Report) -> Option<String> {
         time_constant_ms: 1e3 * fit.model.tau_s,
         time_interval_percent: 200.0 * fit.sd_ln_tau,
         friction_percent: 100.0 * fit.model.coulomb_duty,
+        friction_interval_percent: 200.0 * fit.sd_coulomb,
     }
     .to_string();
     if let Some(lag) = &report.lag {
@@ -346,7 +347,10 @@ fn figures_ui(ui: &mut Ui, model: &Model, which: Loop) {
         for (name, hint, figure) in FIGURES {
             ui.label(name).on_hover_text(hint);
             figure_ui(ui, &run.current().map_or_else(|| "–".to_owned(), figure), 84.0);
-            figure_ui(ui, &figure(shown), 96.0);
+            let proposed = figure_ui(ui, &figure(shown), 96.0);
+            if let Some(likely) = likely(shown, name) {
+                proposed.on_hover_text(likely);
+            }
             let (measured, promised) = measured(run, name);
             let response = figure_ui(ui, &measured, 72.0);
             if let Some(promised) = promised {

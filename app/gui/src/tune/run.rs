@@ -6,6 +6,7 @@ use brushwork_tuning::alternatives::{Alternative, alternatives};
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::law::Law;
 use brushwork_tuning::model::Gains;
+use brushwork_tuning::promise::Promise;
 use brushwork_tuning::registers::RegisterTable as _;
 use brushwork_tuning::report::Verdict;
 use brushwork_tuning::trace::{Predicted, Stretch};
@@ -24,6 +25,8 @@ pub struct Shown {
     pub gains: Gains,
     pub forecast: Forecast,
     pub frequency: Vec<LoopPoint>,
+    /// The ranges of its figures; `None` where the motor was not fitted.
+    pub promise: Option<Promise>,
 }
 
 /// A stretch of the machine in which some gains were tried.
@@ -125,6 +128,7 @@ impl Run {
             registers,
             gains,
             forecast: forecast(&task, &gains),
+            promise: self.report.fit.map(|fit| Promise::of(&task, &gains, &fit, self.report.lag.as_ref())),
             frequency: frequency_response(&task, &gains),
         })
     }
