@@ -3,7 +3,7 @@
 //! `BRUSHWORK_ALBUM=1 cargo test --workspace --test gui album::` draws each page in three sizes and two themes to `target/album`, and the album
 //! that is kept, one size in both themes, to `assets/pictures/album`.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
@@ -28,6 +28,7 @@ use image::RgbaImage;
 use crate::support::alone::{LIMIT, alone};
 use crate::support::bench::Bench;
 use crate::support::one::One;
+use crate::support::palette::Palette;
 use crate::support::words::{self, Window};
 
 const KEPT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/pictures/album");
@@ -242,35 +243,20 @@ fn draw(led: &mut dyn Led, name: &str) {
     led.model().appearance.theme = Theme::Dark.into();
 }
 
-/// With a palette: the most frequent colours stand for themselves, each other one by the nearest of those.
+/// With a palette.
 fn write(picture: &RgbaImage, path: &Path) {
-    let rgb = |pixel: &image::Rgba<u8>| [pixel[0], pixel[1], pixel[2]];
-    let mut counts: HashMap<[u8; 3], usize> = HashMap::new();
-    picture.pixels().for_each(|pixel| *counts.entry(rgb(pixel)).or_default() += 1);
-    let mut by_count: Vec<([u8; 3], usize)> = counts.into_iter().collect();
-    by_count.sort_by_key(|(colour, count)| (std::cmp::Reverse(*count), *colour));
-    let palette: Vec<[u8; 3]> = by_count.iter().take(COLOURS).map(|(colour, _)| *colour).collect();
-    let away = |one: [u8; 3], other: [u8; 3]| -> u32 {
-        one.iter().zip(other).map(|(a, b)| u32::from(a.abs_diff(b)).pow(2)).sum()
-    };
-    let nearest = |colour: [u8; 3]| {
-        let of = (0..palette.len()).min_by_key(|index| away(palette[*index], colour));
-        of.unwrap_or_default() as u8
-    };
-    let stands_for: HashMap<[u8; 3], u8> =
-        by_count.iter().map(|(colour, _)| (*colour, nearest(*colour))).collect();
-    let indices: Vec<u8> = picture.pixels().map(|pixel| stands_for[&rgb(pixel)]).collect();
+    let palette = Palette::of([picture], COLOURS);
     let folder = path.parent().expect("it is in a folder");
     fs::create_dir_all(folder).expect("the folder can be made");
     let file = BufWriter::new(File::create(path).expect("it can be written"));
     let mut encoder = png::Encoder::new(file, picture.width(), picture.height());
     encoder.set_color(png::ColorType::Indexed);
     encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_palette(palette.concat());
+    encoder.set_palette(palette.bytes());
     encoder.set_compression(png::Compression::High);
     encoder.set_filter(png::Filter::NoFilter);
     let mut writer = encoder.write_header().expect("it can be written");
-    writer.write_image_data(&indices).expect("it can be written");
+    writer.write_image_data(&palette.indices(picture)).expect("it can be written");
 }
 
 /// The pages of which the kept album has a picture in both themes.

@@ -8,6 +8,7 @@ mod echo;
 mod examination;
 mod family_recipes;
 mod files;
+mod film;
 mod functions;
 mod general;
 mod generator;

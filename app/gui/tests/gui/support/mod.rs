@@ -9,6 +9,7 @@ pub mod hand;
 pub mod line;
 pub mod lockstep;
 pub mod one;
+pub mod palette;
 pub mod wait;
 pub mod words;
 
