@@ -25,7 +25,9 @@ impl<L: Law> ExperimentGuard<'_, L> {
         }
         let took_s: Vec<f64> =
             self.exchanges[self.stretch_from..].iter().map(|exchange| exchange.1).collect();
-        let late = self.pace.late(&took_s).or(self.kept_late).filter(|_| cause.is_of_motion());
+        // Answers on time that tell the same as late ones did before are to be believed: the motor was brought to rest in between.
+        let kept = self.kept_late.filter(|_| self.kept_cause != Some(cause));
+        let late = self.pace.late(&took_s).or(kept).filter(|_| cause.is_of_motion());
         if let Some(late) = late {
             return self.answered_late(late);
         }
@@ -58,7 +60,9 @@ impl<L: Law> ExperimentGuard<'_, L> {
         let (before, monitor) = (report.clone(), self.monitor.clone());
         loop {
             (self.pace, self.stretch_from) = (Pace::default(), self.exchanges.len());
-            let outcome = work(self, report).map_err(|cause| self.concluded(cause));
+            let seen = work(self, report);
+            let cause = seen.as_ref().err().copied();
+            let outcome = seen.map_err(|cause| self.concluded(cause));
             let late = self.pace.late_gap();
             let is_late = match outcome {
                 Ok(_) => late.is_some(),
@@ -68,6 +72,7 @@ impl<L: Law> ExperimentGuard<'_, L> {
                 self.tries += 1;
                 // What is concluded after that is held against it too: the motor may have been left in another state than a run leaves it in.
                 self.kept_late = self.kept_late.or(late).or(self.pace.longest());
+                self.kept_cause = cause;
                 report.clone_from(&before);
                 let whose = match &outcome {
                     Err(Cause::AnsweredLate { whose, .. }) => *whose,
@@ -76,6 +81,7 @@ impl<L: Law> ExperimentGuard<'_, L> {
                 self.begin_again(anew, &monitor, whose)?;
                 continue;
             }
+            self.kept_cause = self.kept_cause.filter(|_| outcome.is_err());
             if let Some(late) = late.filter(|_| outcome.is_ok()) {
                 let (longest_gap_ms, at_ms) = self.milliseconds(late);
                 mark(report, Cause::TakenLate { longest_gap_ms, at_ms, whose: late.whose() });

@@ -103,6 +103,8 @@ pub struct ExperimentGuard<'a, L: Law> {
     stretch_from: usize,
     /// The longest gap of earlier stretches whose figures are in use.
     kept_late: Option<Late>,
+    /// What the last stretch that was done again had ended with, where it was refused.
+    kept_cause: Option<Cause>,
     /// How often stretches were done again.
     tries: u32,
     epoch_s: f64,
@@ -149,6 +151,7 @@ impl<'a, L: Law> ExperimentGuard<'a, L> {
             pace: Pace::default(),
             stretch_from: 0,
             kept_late: None,
+            kept_cause: None,
             tries: 0,
             epoch_s: now.as_secs_f64(),
             first_counts: None,

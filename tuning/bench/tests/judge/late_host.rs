@@ -2,16 +2,18 @@
 
 use brushwork_mcp_axis::McpLaw;
 use brushwork_mcp_sim::controller::Controller;
+use brushwork_plant::world::WorldAction;
 use brushwork_tuning::axis::Axis as _;
 use brushwork_tuning::cause::{Cause, Whose};
 use brushwork_tuning::law::Law;
 use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::tune::{Method, Request, tune};
-use brushwork_tuning_bench::line::SimulatedLine;
+use brushwork_tuning_bench::line::{Bench as _, Event, SimulatedLine};
 use brushwork_tuning_bench::mcp::population::specimen;
 use brushwork_tuning_bench::motion_mind::population::specimen as mind_specimen;
 use brushwork_tuning_bench::run::request_of;
 use brushwork_tuning_bench::unit::Unit;
+use brushwork_values::Motor;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use std::time::Duration;
@@ -258,4 +260,40 @@ fn a_stretch_over_a_line_that_stood_still_is_done_again_and_gives_gains() {
         let report = tune(&mut axis, &request_of(&plant, Method::Velocity));
         assert_ne!(report.verdict, Verdict::Refused, "plant {number} at {at_ms} ms: {:?}", report.causes);
     }
+}
+
+/// A fault that comes after a late gap is seen in a stretch that is done again for the gap's sake. What the second try tells, in time, is the machine's.
+#[test]
+fn a_fault_that_a_timely_second_try_shows_again_is_named() {
+    let faults = [
+        (WorldAction::ReverseEncoder { motor: Motor::M1, on: true }, Cause::EncoderFlipped),
+        (WorldAction::LoseEncoder { motor: Motor::M1, on: true }, Cause::EncoderLost),
+        (WorldAction::LockShaft { motor: Motor::M1, on: true }, Cause::Stalled),
+        (WorldAction::OpenLead { motor: Motor::M1, on: true }, Cause::MotorOpened),
+    ];
+    let (mut named, mut runs) = (0, 0);
+    for number in 0..PLANTS {
+        let plant = specimen(31, number);
+        let whole = tune(&mut Unit::axis(&plant), &request_of(&plant, Method::Velocity));
+        let (before_s, whole_s) = whole.seconds;
+        for (action, cause) in &faults {
+            let mut axis = Unit::axis(&plant);
+            let start = axis.carrier.unit().time();
+            let after = |seconds: f64| start + Duration::from_secs_f64(seconds);
+            let trial_s = whole_s - before_s;
+            axis.carrier.stalls = vec![(after(before_s + 0.2 * trial_s), Duration::from_millis(120))];
+            axis.carrier
+                .schedule(vec![Event { at: after(before_s + 0.6 * trial_s), action: action.clone() }]);
+            let report = tune(&mut axis, &request_of(&plant, Method::Velocity));
+            assert!(
+                report.replay().as_ref() == Some(&report),
+                "plant {number}, {cause:?}: the replay differs"
+            );
+            assert_eq!(report.verdict, Verdict::Refused, "plant {number}, {cause:?}");
+            named += usize::from(report.causes.first() == Some(cause));
+            runs += 1;
+        }
+    }
+    println!("{named} of {runs} named");
+    assert!(5 * named >= 4 * runs, "{named} of {runs}");
 }
