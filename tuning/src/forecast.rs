@@ -5,7 +5,7 @@
 use crate::design::Task;
 use crate::law::Law;
 use crate::linear::{DiscretePlant, LoopPlant};
-use crate::model::Gains;
+use crate::model::{Gains, PlantModel};
 use crate::score::{LOAD_STEP_DUTY, Score, VELOCITY_STEP, horizon_s, position_step};
 use crate::ticks::{Setpoint, TickLoop};
 
@@ -88,33 +88,11 @@ impl LoopPoint {
 /// What `gains` would do.
 #[must_use]
 pub fn forecast<L: Law>(task: &Task<L>, gains: &Gains) -> Forecast {
-    let is_position = gains.position.is_some();
-    let (from, to) = if is_position {
-        (0.0, position_step(task.plant.gain_counts_per_s, task.plant.tau_s))
-    } else {
-        let top = task.plant.gain_counts_per_s;
-        (VELOCITY_STEP.0 * top, VELOCITY_STEP.1 * top)
-    };
+    let (from, to) = usual_step(&task.plant, gains);
     let tick_s = task.law.tick_s();
-    let ticks = (horizon_s(task.plant.tau_s) / tick_s) as usize;
-    let mut twin = TickLoop::new(task.plant, task.law, task.lag, *gains, task.qpps);
-    if !is_position {
-        twin.start_steady(from);
-    }
-    let goal = if is_position { Setpoint::Position(to, task.qpps) } else { Setpoint::Speed(to) };
-    let mut run = |load: f64| -> Vec<Reply> {
-        let reply = |n: usize| {
-            let duty = twin.tick(goal, load);
-            let value = if is_position { twin.motion.position } else { twin.motion.speed };
-            Reply { t: (n + 1) as f64 * tick_s, value, duty }
-        };
-        (0..ticks).map(reply).collect()
-    };
-    let (after_step, after_load) = (run(0.0), run(LOAD_STEP_DUTY));
-    let step = to - from;
-    let errors = |replies: &[Reply]| -> Vec<f64> { replies.iter().map(|reply| to - reply.value).collect() };
-    let band = if is_position { 0.02_f64.max(3.0 / step) } else { 0.05 };
-    let score = Score::of(&errors(&after_step), &errors(&after_load), tick_s, step, band);
+    let course = course(task, gains, (from, to), horizon_s(task.plant.tau_s), false);
+    let (ticks, score, step) = (course.after_step.len(), course.score, to - from);
+    let Course { after_step, after_load, band, .. } = course;
     let plant = loop_of(task);
     let margins = plant.margins(gains, task.qpps);
     let worst = LoopPlant::new(DiscretePlant::of(&task.plant, tick_s), &task.law, task.worst_lag);
@@ -132,6 +110,61 @@ pub fn forecast<L: Law>(task: &Task<L>, gains: &Gains) -> Forecast {
         after_step,
         after_load,
     }
+}
+
+/// The step by which gains are judged: from where, to where; counts/s, or counts.
+pub(crate) fn usual_step(plant: &PlantModel, gains: &Gains) -> (f64, f64) {
+    let top = plant.gain_counts_per_s;
+    if gains.position.is_some() {
+        (0.0, position_step(top, plant.tau_s))
+    } else {
+        (VELOCITY_STEP.0 * top, VELOCITY_STEP.1 * top)
+    }
+}
+
+/// What a step and then a load make of a loop.
+pub(crate) struct Course {
+    after_step: Vec<Reply>,
+    after_load: Vec<Reply>,
+    band: f64,
+    pub(crate) score: Score,
+}
+
+/// A step from one value to another, and after `horizon_s` a load for as long again; where it is `held` first, the loop has had as long at the first
+/// value to make up for a load that is there already.
+pub(crate) fn course<L: Law>(
+    task: &Task<L>,
+    gains: &Gains,
+    (from, to): (f64, f64),
+    horizon_s: f64,
+    held: bool,
+) -> Course {
+    let is_position = gains.position.is_some();
+    let tick_s = task.law.tick_s();
+    let ticks = (horizon_s / tick_s) as usize;
+    let mut twin = TickLoop::new(task.plant, task.law, task.lag, *gains, task.qpps);
+    if !is_position {
+        twin.start_steady(from);
+    }
+    let setpoint =
+        |value: f64| if is_position { Setpoint::Position(value, task.qpps) } else { Setpoint::Speed(value) };
+    for _ in 0..if held { ticks } else { 0 } {
+        twin.tick(setpoint(from), 0.0);
+    }
+    let mut run = |load: f64| -> Vec<Reply> {
+        let reply = |n: usize| {
+            let duty = twin.tick(setpoint(to), load);
+            let value = if is_position { twin.motion.position } else { twin.motion.speed };
+            Reply { t: (n + 1) as f64 * tick_s, value, duty }
+        };
+        (0..ticks).map(reply).collect()
+    };
+    let (after_step, after_load) = (run(0.0), run(LOAD_STEP_DUTY));
+    let step = to - from;
+    let errors = |replies: &[Reply]| -> Vec<f64> { replies.iter().map(|reply| to - reply.value).collect() };
+    let band = if is_position { 0.02_f64.max(3.0 / step) } else { 0.05 };
+    let score = Score::of(&errors(&after_step), &errors(&after_load), tick_s, step, band);
+    Course { after_step, after_load, band, score }
 }
 
 /// The open loop over frequency, up to half the firmware's loop rate.

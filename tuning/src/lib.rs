@@ -25,6 +25,7 @@ pub mod lag;
 pub mod law;
 pub mod law_probe;
 pub mod linear;
+pub mod load_change;
 mod margin;
 pub mod model;
 pub mod motor_monitor;

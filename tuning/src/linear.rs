@@ -134,7 +134,19 @@ impl LoopPlant {
     /// Largest magnitude of a closed-loop pole; below 1 is stable. Fractional delays count as the next whole one.
     #[must_use]
     pub fn spectral_radius(&self, gains: &Gains, qpps: f64) -> f64 {
-        let Some(matrix) = self.closed_loop(gains, qpps) else { return f64::INFINITY };
+        self.largest_pole(gains, qpps, 1.0)
+    }
+
+    /// The same with fractional delays as they are: for that part of a tick the duty before is still given.
+    #[must_use]
+    pub fn exact_spectral_radius(&self, gains: &Gains, qpps: f64) -> f64 {
+        let ticks = self.lag.delay_ticks;
+        self.largest_pole(gains, qpps, 1.0 - (ticks.ceil() - ticks))
+    }
+
+    /// Largest magnitude of a pole where the oldest of the duties under way is given for so much of a tick, and the next one for the rest.
+    fn largest_pole(&self, gains: &Gains, qpps: f64, oldest: f64) -> f64 {
+        let Some(matrix) = self.closed_loop(gains, qpps, oldest) else { return f64::INFINITY };
         matrix.complex_eigenvalues().iter().map(|pole| pole.norm()).fold(0.0, f64::max)
     }
 
@@ -155,7 +167,7 @@ impl LoopPlant {
 
     /// The closed loop as one matrix over: plant, last count, filtered speed, velocity integral, last velocity error, position
     /// integral, duties under way.
-    fn closed_loop(&self, gains: &Gains, qpps: f64) -> Option<DMatrix<f64>> {
+    fn closed_loop(&self, gains: &Gains, qpps: f64, oldest: f64) -> Option<DMatrix<f64>> {
         let n = self.plant.a.nrows();
         let delay = self.lag.delay_ticks.ceil() as usize;
         let tick_s = self.tick_s;
@@ -189,7 +201,11 @@ impl LoopPlant {
                 + (&new_error - unit(error)) * (velocity.d / tick_s))
                 / qpps
         };
-        let applied = if delay == 0 { duty.clone() } else { unit(queue) };
+        let applied = match delay {
+            0 => duty.clone(),
+            1 => unit(queue) * oldest + &duty * (1.0 - oldest),
+            _ => unit(queue) * oldest + unit(queue + 1) * (1.0 - oldest),
+        };
         let mut matrix = DMatrix::zeros(size, size);
         for r in 0..n {
             let mut row = applied.transpose() * self.plant.b[r];

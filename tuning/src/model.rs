@@ -126,6 +126,19 @@ impl PlantModel {
         })
     }
 
+    /// The steady load, as duty, that full duty carries at a speed beside friction and the load that is there; below 0 where the motor
+    /// does not reach that speed at all. Of both directions the one in which less is left.
+    ///
+    /// At full duty `v = K (1 - sag - load - coulomb) / (1 - sag)`; at the current limit the push is that limit, of which viscous friction
+    /// takes its share.
+    #[must_use]
+    pub fn spare_load_duty(&self, speed: f64) -> f64 {
+        let share = speed.abs() / self.gain_counts_per_s;
+        let push = (1.0 - self.sag) * (1.0 - share);
+        let most = self.drive_limit.map_or(push, |limit| push.min(limit - VISCOUS_SHARE * share));
+        most - self.coulomb_duty - self.load_duty.abs()
+    }
+
     /// Constant acceleration; the time used when the motion came to rest before the end.
     fn slide(&self, motion: &mut Motion, slope: f64, dt: f64) -> Option<f64> {
         let end = motion.speed + slope * dt;

@@ -103,9 +103,10 @@ impl StabilityMargins {
     }
 }
 
-/// Phases without jumps, degrees.
+/// Phases without jumps, degrees. A loop has one to three integrals at its lowest frequencies, so that what looks like a lead of more than a quarter turn
+/// there is a lag.
 fn unwrapped(points: &[LoopPoint]) -> Vec<f64> {
-    let mut turns = 0.0;
+    let mut turns = if points.first().is_some_and(|point| point.phase_deg() > 90.0) { -360.0 } else { 0.0 };
     let mut before: Option<f64> = None;
     points
         .iter()
@@ -156,6 +157,23 @@ mod tests {
         close(found.gain, std::f64::consts::FRAC_PI_2 / 0.02 / 10.0);
         assert!(found.bandwidth_hz.is_some_and(|hz| hz > 10.0 / TAU && hz < 30.0 / TAU), "{found:?}");
         assert!(found.ms > 1.0 && found.ms < 1.6, "{found:?}");
+    }
+
+    #[test]
+    fn a_loop_that_begins_beyond_half_a_turn_has_the_phase_margin_of_its_crossover() {
+        // g (1 + s / 10)^2 / s^3 begins at -270 degrees; with g = 1e6 / 101 it has gain 1 at 100 rad/s.
+        let points: Vec<LoopPoint> = (0..500)
+            .map(|n| 0.05 * 1.02_f64.powi(n))
+            .map(|hz| {
+                let w = TAU * hz;
+                let gain = 1e6 / 101.0 * (1.0 + (w / 10.0).powi(2)) / w.powi(3);
+                let phase = -1.5 * std::f64::consts::PI + 2.0 * (w / 10.0).atan();
+                LoopPoint { hz, open: (gain * phase.cos(), gain * phase.sin()) }
+            })
+            .collect();
+        let wanted = -90.0 + 2.0 * 10.0_f64.atan().to_degrees();
+        let found = StabilityMargins::of(&points).phase_deg.expect("it has one");
+        assert!((found - wanted).abs() < 0.5, "{found} is not {wanted}");
     }
 
     #[test]

@@ -6,6 +6,7 @@ mod board_table;
 mod busy_host;
 mod late_host;
 mod laws;
+mod load_change;
 mod loads;
 mod methods;
 mod mind_guard;
