@@ -107,6 +107,7 @@ messages! {
     pub enum DamageMessage {
         Senseless "holds a record that makes no sense",
         CutOff "ends in the middle of a block",
+        CutOffInLine "ends in the middle of a line",
         Damaged "is damaged",
     }
 }

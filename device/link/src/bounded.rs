@@ -65,18 +65,25 @@ pub struct BoundedLines<R> {
     inner: R,
     most_bytes: u64,
     line_bytes: u64,
+    is_at_end: bool,
 }
 
 impl<R: BufRead> BoundedLines<R> {
     /// No line of `inner` may have more than `most_bytes`.
     pub fn new(inner: R, most_bytes: u64) -> Self {
-        Self { inner, most_bytes, line_bytes: 0 }
+        Self { inner, most_bytes, line_bytes: 0, is_at_end: false }
+    }
+
+    /// Whether all was read, and its last line has no end.
+    pub fn ended_within_a_line(&self) -> bool {
+        self.is_at_end && self.line_bytes > 0
     }
 }
 
 impl<R: BufRead> Read for BoundedLines<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.inner.read(buffer)?;
+        self.is_at_end = count == 0 && !buffer.is_empty();
         for byte in &buffer[..count] {
             self.line_bytes = if *byte == b'\n' { 0 } else { self.line_bytes + 1 };
             if self.line_bytes > self.most_bytes {

@@ -12,6 +12,8 @@ use std::io::{BufRead, BufReader, Read, Write};
 use std::time::{Duration, SystemTime};
 
 use super::{Column, Head, Reading, Record, RecordingError};
+use crate::messages::{DamageMessage, RecordingMessage};
+use brushwork_link::Message;
 use brushwork_link::bounded::BoundedLines;
 
 /// Names of the columns before the signals.
@@ -157,7 +159,8 @@ enum Role {
 /// No line is longer: a recording of every channel of this program has a line of some 2 KiB, and foreign ones have more columns.
 const MOST_LINE_BYTES: u64 = 1 << 20;
 
-/// Reads a whole file. `take` gets one record after the other, and stops the reading by giving `false`.
+/// Reads a whole file. `take` gets one record after the other, and stops the reading by giving `false`. The answer is a sentence about a
+/// last line that was cut off, as a power loss leaves it: what stands before it was read.
 ///
 /// # Errors
 /// The file cannot be read, or a line is not as it should be.
@@ -166,20 +169,34 @@ pub fn read(
     path: &str,
     mut begin: impl FnMut(&Head),
     mut take: impl FnMut(Record) -> bool,
-) -> Result<(), RecordingError> {
+) -> Result<Option<Message>, RecordingError> {
     let mut input = BufReader::with_capacity(1 << 16, input);
     let delimiter = delimiter_of(&mut input).map_err(|source| io(path, source))?;
     let lines = BoundedLines::new(input, MOST_LINE_BYTES);
     let mut reader = csv::ReaderBuilder::new().delimiter(delimiter).from_reader(lines);
     let names = reader.headers().map_err(|error| broken(path, &error))?.clone();
     let (columns, roles) = roles_of(path, &names)?;
+    // Each line of such a file has an end, so that one without may lack the last digits of its last number.
+    let is_own = names.iter().zip(FIRST).filter(|(name, first)| name == first).count() == FIRST.len();
     let mut line = csv::StringRecord::new();
-    let mut began = None;
+    let (mut began, mut cut_off) = (None, None);
     let mut last_us = 0;
-    while reader.read_record(&mut line).map_err(|error| broken(path, &error))? {
+    loop {
+        let read = reader.read_record(&mut line).map_err(|error| broken(path, &error));
+        if matches!(read, Ok(false)) {
+            break;
+        }
         let number = line.position().map_or(0, csv::Position::line);
-        let parsed =
-            Line::parse(&line, &roles, &names, delimiter).map_err(|what| at_line(path, number, what))?;
+        let parse =
+            |_| Line::parse(&line, &roles, &names, delimiter).map_err(|what| at_line(path, number, what));
+        let parsed = read.and_then(parse);
+        let has_no_end = reader.get_ref().ended_within_a_line();
+        if has_no_end && (is_own || (parsed.is_err() && began.is_some())) {
+            let seconds = last_us as f64 / 1e6;
+            cut_off = Some(RecordingMessage::InPart { damage: DamageMessage::CutOffInLine, seconds }.into());
+            break;
+        }
+        let parsed = parsed?;
         if began.is_none() {
             let utc = parsed.utc.unwrap_or(SystemTime::UNIX_EPOCH);
             let start = utc.checked_sub(Duration::from_micros(parsed.time_us)).unwrap_or(utc);
@@ -194,10 +211,14 @@ pub fn read(
             last_us = parsed.time_us;
         }
         if !take(parsed.record()) {
-            return Ok(());
+            return Ok(None);
         }
     }
-    if began.is_none() { Err(at_line(path, 2, "there is no line with values".to_owned())) } else { Ok(()) }
+    if began.is_none() {
+        Err(at_line(path, 2, "there is no line with values".to_owned()))
+    } else {
+        Ok(cut_off)
+    }
 }
 
 /// The delimiter that the first line has most of.
@@ -450,6 +471,46 @@ mod tests {
         assert_eq!(records, [Record::Sample(vec![reading]), Record::Sample(Vec::new())]);
         let (_, records) = read_text("time_ms,a\n250,1\n").unwrap();
         assert_eq!(records[0].ends_us(), 250_000);
+    }
+
+    #[test]
+    fn a_last_line_that_was_cut_off_is_told_and_those_before_it_are_read() {
+        let head = Head {
+            columns: vec![Column::new("M1 PWM", "%")],
+            began: SystemTime::UNIX_EPOCH + Duration::from_secs(1_800_000_000),
+            device: String::new(),
+        };
+        let mut file = Vec::new();
+        let mut writer = CsvWriter::new(&mut file, &head, Times::Exchange).unwrap();
+        let sample = |at_us| {
+            let reading = Reading { column: 0, value: 12.5, requested_us: at_us, replied_us: at_us + 1900 };
+            Record::Sample(vec![reading])
+        };
+        let records: Vec<Record> = (0..3).map(|number| sample(1_000_000 + number * 10_000)).collect();
+        records.iter().for_each(|record| writer.write(record).unwrap());
+        writer.flush().unwrap();
+        drop(writer);
+        let ends: Vec<usize> = (0..file.len()).filter(|at| file[*at] == b'\n').map(|at| at + 1).collect();
+        // Of the second line each number of its bytes, of which the last ones leave a shorter last number.
+        for cut in ends[1]..ends[3] {
+            let mut found = Vec::new();
+            let take = |record| {
+                found.push(record);
+                true
+            };
+            let note = read(&file[..cut], "run.csv", |_| (), take).unwrap();
+            let whole = ends.iter().filter(|end| **end <= cut).count() - 1;
+            assert_eq!(found, records[..whole], "{cut}");
+            let said = note.map(|note| note.to_string());
+            let seconds = 1.0019 + 0.01 * (whole - 1) as f64;
+            let wanted = format!(
+                "The file ends in the middle of a line after {seconds:.3} s; what stands before that is shown."
+            );
+            assert_eq!(said, (!ends.contains(&cut)).then_some(wanted), "{cut}");
+        }
+        // Other programs may leave the last line without an end.
+        assert_eq!(read_text("time_s,a\n0.1,5\n0.2,7").unwrap().1.len(), 2);
+        assert_eq!(read_text("time_s,a\n0.1,5\n0.2").unwrap().1.len(), 1);
     }
 
     #[test]

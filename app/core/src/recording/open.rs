@@ -17,15 +17,25 @@ pub fn read(
     take: impl FnMut(Record) -> bool,
 ) -> Result<Option<Message>, RecordingError> {
     let name = path.display().to_string();
-    let io = |source| RecordingError::Io { path: name.clone(), source };
-    let mut file = files::open(path).map_err(io)?;
+    let file = files::open(path).map_err(|source| RecordingError::Io { path: name.clone(), source })?;
+    read_from(file, &name, begin, take)
+}
+
+/// The same of what was opened already.
+pub(super) fn read_from(
+    mut file: impl Read + Seek,
+    name: &str,
+    begin: impl FnMut(&Head),
+    take: impl FnMut(Record) -> bool,
+) -> Result<Option<Message>, RecordingError> {
+    let io = |source| RecordingError::Io { path: name.to_owned(), source };
     let mut first = Vec::new();
     file.by_ref().take(5).read_to_end(&mut first).map_err(io)?;
     file.seek(SeekFrom::Start(0)).map_err(io)?;
     if first == b"BWREC" {
-        return compact::read(std::io::BufReader::new(file), &name, begin, take);
+        return compact::read(std::io::BufReader::new(file), name, begin, take);
     }
-    csv::read(file, &name, begin, take).map(|()| None)
+    csv::read(file, name, begin, take)
 }
 
 #[cfg(test)]

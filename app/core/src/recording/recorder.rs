@@ -1,14 +1,13 @@
 //! Writes a recording as data comes in, on a thread of its own: hours fit, and the window never waits for the disk.
 
 use brushwork_link::Message;
-use std::fs::OpenOptions;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use brushwork_link::files::{Disk, Files as _};
+use brushwork_link::files::{Disk, Files, flush_name};
 use brushwork_link::work::HAS_THREADS;
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TrySendError, bounded};
 
@@ -79,17 +78,7 @@ impl Recorder {
     /// # Errors
     /// There is no thread for it. What goes wrong with the file is told by [`Recorder::progress`].
     pub fn start(path: &Path, form: Form, head: Head) -> std::io::Result<Self> {
-        if !HAS_THREADS {
-            return Self::held(path, form, &head);
-        }
-        let file_path = path.to_owned();
-        let open = move || -> std::io::Result<Box<dyn Write>> {
-            if let Some(folder) = file_path.parent() {
-                std::fs::create_dir_all(folder)?;
-            }
-            Ok(Box::new(OpenOptions::new().write(true).create_new(true).open(file_path)?))
-        };
-        Self::into(path, form, head, open)
+        if HAS_THREADS { Self::on(Arc::new(Disk), path, form, head) } else { Self::held(path, form, &head) }
     }
 
     /// Begins one that is held in memory until it ends.
@@ -100,20 +89,16 @@ impl Recorder {
         Ok(Self { path: path.to_owned(), sender: None, progress, thread: None, held: Some(Mutex::new(held)) })
     }
 
-    fn into(
-        path: &Path,
-        form: Form,
-        head: Head,
-        open: impl FnOnce() -> std::io::Result<Box<dyn Write>> + Send + 'static,
-    ) -> std::io::Result<Self> {
+    fn on(files: Arc<dyn Files>, path: &Path, form: Form, head: Head) -> std::io::Result<Self> {
         let (sender, receiver) = bounded(QUEUE);
         let progress = Arc::new(Mutex::new(Progress::default()));
-        let (reported, name) = (progress.clone(), path.display().to_string());
+        let (reported, file) = (progress.clone(), path.to_owned());
         let work = move || {
-            let result = open().and_then(|file| write_all(file, form, &head, &receiver, &reported));
+            let result = write_all(&*files, &file, form, &head, &receiver, &reported, FLUSH_INTERVAL);
             // Dropping the receiver tells the window that nothing more is taken.
             drop(receiver);
-            lock(&reported).ended = Some(result.map_err(|error| sentence(&name, &error)));
+            let result = result.map_err(|error| sentence(&file.display().to_string(), &error));
+            lock(&reported).ended = Some(result);
         };
         let thread = thread::Builder::new().name("recorder".to_owned()).spawn(work)?;
         Ok(Self { path: path.to_owned(), sender: Some(sender), progress, thread: Some(thread), held: None })
@@ -220,30 +205,40 @@ impl<W: Write> Writer<W> {
     }
 }
 
-/// Writes until nobody hands over any more.
+/// Writes to a new file until nobody hands over any more. What was handed over outlasts a power loss an interval later.
 fn write_all(
-    file: Box<dyn Write>,
+    files: &dyn Files,
+    path: &Path,
     form: Form,
     head: &Head,
     records: &Receiver<Record>,
     progress: &Arc<Mutex<Progress>>,
+    flush_interval: Duration,
 ) -> std::io::Result<()> {
-    let out = BufWriter::new(Counted { inner: file, progress: progress.clone() });
-    let mut writer = Writer::new(out, form, head)?;
+    if let Some(folder) = path.parent() {
+        files.make_folder(folder)?;
+    }
+    let file = Counted { inner: files.create(path)?, progress: progress.clone() };
+    let mut writer = Writer::new(BufWriter::new(file), form, head)?;
     writer.flush()?;
-    let mut flushed = Instant::now();
+    files.flush(path)?;
+    flush_name(files, path)?;
+    let (mut flushed_at, mut has_more) = (Instant::now(), false);
     loop {
-        match records.recv_timeout(FLUSH_INTERVAL) {
-            Ok(record) => {
-                writer.write(&record)?;
-                lock(progress).samples += u64::from(matches!(record, Record::Sample(_)));
-            }
-            Err(RecvTimeoutError::Timeout) => {}
-            Err(RecvTimeoutError::Disconnected) => return writer.flush(),
+        let next = records.recv_timeout(flush_interval);
+        if let Ok(record) = &next {
+            writer.write(record)?;
+            lock(progress).samples += u64::from(matches!(record, Record::Sample(_)));
+            has_more = true;
         }
-        if flushed.elapsed() >= FLUSH_INTERVAL {
+        let is_last = matches!(next, Err(RecvTimeoutError::Disconnected));
+        if has_more && (is_last || flushed_at.elapsed() >= flush_interval) {
             writer.flush()?;
-            flushed = Instant::now();
+            files.flush(path)?;
+            (flushed_at, has_more) = (Instant::now(), false);
+        }
+        if is_last {
+            return Ok(());
         }
     }
 }
@@ -267,7 +262,9 @@ fn sentence(path: &str, error: &std::io::Error) -> Message {
 mod tests {
     use std::time::SystemTime;
 
-    use super::super::{Column, Reading};
+    use brushwork_link::files::{DiskFault, Remains, SimulatedDisk};
+
+    use super::super::{Column, Reading, open};
     use super::*;
     use crate::wait::until_some;
 
@@ -336,18 +333,73 @@ mod tests {
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "precious");
     }
 
-    #[cfg(target_os = "linux")]
+    const PATH: &str = "/recordings/run";
+
     #[test]
     fn a_full_disk_ends_the_recording_with_a_sentence() {
-        let path = Path::new("/dev/full");
-        let open = || -> std::io::Result<Box<dyn Write>> {
-            Ok(Box::new(OpenOptions::new().write(true).open("/dev/full")?))
-        };
-        let recorder = Recorder::into(path, Form::Compact, head(), open).unwrap();
+        let disk = SimulatedDisk::default();
+        disk.fail_at(1, DiskFault::Full);
+        let recorder = Recorder::on(Arc::new(disk), Path::new(PATH), Form::Compact, head()).unwrap();
         recorder.record(sample(1));
         let reported = settled(&recorder).unwrap_err().to_string();
-        assert!(reported.starts_with("Could not record to /dev/full: No space left"), "{reported}");
+        assert!(reported.starts_with("Could not record to /recordings/run: "), "{reported}");
         assert!(reported.ends_with("Make room on the disk, or choose another folder."), "{reported}");
         recorder.record(sample(2));
+    }
+
+    /// How a recording of these ends on a disk, each record flushed by itself.
+    fn recorded(disk: &SimulatedDisk, form: Form, records: &[Record]) -> std::io::Result<()> {
+        let (sender, receiver) = bounded(QUEUE);
+        records.iter().for_each(|record| sender.send(record.clone()).unwrap());
+        drop(sender);
+        let progress = Arc::default();
+        write_all(disk, Path::new(PATH), form, &head(), &receiver, &progress, Duration::ZERO)
+    }
+
+    /// What is read of what a disk has.
+    fn read_back(disk: &SimulatedDisk) -> Option<Vec<Record>> {
+        let mut records = Vec::new();
+        let take = |record| {
+            records.push(record);
+            true
+        };
+        let file = std::io::Cursor::new(disk.bytes(Path::new(PATH))?);
+        open::read_from(file, PATH, |_| (), take).is_ok().then_some(records)
+    }
+
+    #[test]
+    fn whatever_fails_and_wherever_it_is_cut_what_was_flushed_is_read_back_and_nothing_else() {
+        /// Folder, name, head, and a flush of each of the last two.
+        const TO_BEGIN: usize = 5;
+        /// A record, and its flush.
+        const PER_RECORD: usize = 2;
+        let records: Vec<Record> = (0..4).map(|at| sample(at * 1000)).collect();
+        let mut cuts = 0;
+        for form in [Form::Csv, Form::Compact] {
+            let disk = SimulatedDisk::default();
+            disk.fail_at(usize::MAX, DiskFault::Failed);
+            recorded(&disk, form, &records).unwrap();
+            assert_eq!(disk.calls(), TO_BEGIN + PER_RECORD * records.len());
+            for fault in DiskFault::ALL {
+                for call in 1..=disk.calls() {
+                    let disk = SimulatedDisk::default();
+                    disk.fail_at(call, fault);
+                    let told = recorded(&disk, form, &records);
+                    let done = match call.checked_sub(TO_BEGIN + 1) {
+                        _ if told.is_ok() => Some(records.len()),
+                        later => later.map(|later| later / PER_RECORD),
+                    };
+                    for remains in Remains::ALL {
+                        let found = read_back(&disk.after_crash(remains));
+                        let at = format!("{form:?}, {fault:?} at call {call}, {remains:?}: {found:?}");
+                        let found = found.unwrap_or_default();
+                        assert_eq!(found, records[..found.len()], "{at}");
+                        assert!(done.is_none_or(|done| found.len() >= done), "{at}");
+                        cuts += 1;
+                    }
+                }
+            }
+        }
+        assert!(cuts > 900, "{cuts}");
     }
 }

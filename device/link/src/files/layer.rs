@@ -3,7 +3,7 @@
 use std::ffi::OsString;
 use std::fmt;
 use std::fs::File;
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::SystemTime;
@@ -44,6 +44,12 @@ pub trait Files: fmt::Debug + Send + Sync {
     /// # Errors
     /// The system refuses.
     fn write(&self, path: &Path, content: &[u8]) -> io::Result<()>;
+
+    /// Makes a file that is not there yet, to be written bit by bit.
+    ///
+    /// # Errors
+    /// It is there already, or the system refuses.
+    fn create(&self, path: &Path) -> io::Result<Box<dyn Write + Send>>;
 
     /// Makes a file's content, or the names in a folder, outlast a power loss.
     ///
@@ -122,7 +128,15 @@ pub fn replace(files: &dyn Files, path: &Path, content: &[u8]) -> io::Result<()>
             // The first error is the one to tell; a left-over temporary file harms nothing.
             let _ = files.remove(&beside);
         })?;
-    match target.parent() {
+    flush_name(files, &target)
+}
+
+/// Makes a file's name outlast a power loss.
+///
+/// # Errors
+/// As [`Files::flush`].
+pub fn flush_name(files: &dyn Files, path: &Path) -> io::Result<()> {
+    match path.parent() {
         Some(folder) if folder.as_os_str().is_empty() => files.flush(Path::new(".")),
         Some(folder) => files.flush(folder),
         None => Ok(()),

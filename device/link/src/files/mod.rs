@@ -11,7 +11,7 @@ mod simulated;
 mod system;
 
 pub use disk::{replace_file, write_new_file};
-pub use layer::{Files, Look, process_id, replace};
+pub use layer::{Files, Look, flush_name, process_id, replace};
 pub use memory::{MemoryDisk, Shelf};
 #[cfg(target_family = "wasm")]
 pub use page::{Disk, look, open, page};

@@ -1,7 +1,7 @@
 //! The disk of a program that is a web page: its memory, and what the browser keeps for it.
 
 use std::fs::File;
-use std::io::{self, Cursor};
+use std::io::{self, Cursor, Write};
 use std::path::{Path, PathBuf};
 
 use super::layer::{Files, Look};
@@ -34,6 +34,10 @@ impl Files for Disk {
 
     fn write(&self, path: &Path, content: &[u8]) -> io::Result<()> {
         PAGE.write(path, content)
+    }
+
+    fn create(&self, path: &Path) -> io::Result<Box<dyn Write + Send>> {
+        PAGE.create(path)
     }
 
     fn flush(&self, path: &Path) -> io::Result<()> {

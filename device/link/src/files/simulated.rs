@@ -5,7 +5,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -75,7 +75,8 @@ struct State {
 #[derive(Clone, Debug, Default)]
 struct Content {
     now: Vec<u8>,
-    flushed: Option<Vec<u8>>,
+    /// So many bytes of it were flushed.
+    flushed: usize,
 }
 
 /// What a call may do.
@@ -109,10 +110,9 @@ impl SimulatedDisk {
             state.names = state.flushed_names.clone();
         }
         for content in &mut state.contents {
-            if content.flushed.as_ref() != Some(&content.now) {
-                content.now.truncate(content.now.len() * remains.halves / 2);
-            }
-            content.flushed = Some(content.now.clone());
+            let unflushed = content.now.len() - content.flushed;
+            content.now.truncate(content.flushed + unflushed * remains.halves / 2);
+            content.flushed = content.now.len();
         }
         state.flushed_names = state.names.clone();
         state.calls = 0;
@@ -120,8 +120,50 @@ impl SimulatedDisk {
         Self(Arc::new(Mutex::new(state)))
     }
 
+    /// A file's bytes, looked at from outside: no call that could fail.
+    #[must_use]
+    pub fn bytes(&self, path: &Path) -> Option<Vec<u8>> {
+        let state = self.state();
+        Some(state.contents[state.number(path).ok()?].now.clone())
+    }
+
     fn state(&self) -> MutexGuard<'_, State> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// A file that is written bit by bit.
+struct Growing {
+    disk: SimulatedDisk,
+    number: usize,
+}
+
+impl Write for Growing {
+    /// A call that fails has written nothing, but where the power goes; a disk that becomes full first takes what fits.
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let mut state = self.disk.state();
+        let fault = state.begin(Call::Fill)?;
+        let half = &bytes[..bytes.len() / 2];
+        let is_now = state.fault.is_some_and(|(number, _)| number == state.calls);
+        let content = &mut state.contents[self.number].now;
+        match fault {
+            None => content.extend(bytes),
+            Some(DiskFault::Full) if is_now && !half.is_empty() => {
+                content.extend(half);
+                return Ok(half.len());
+            }
+            Some(DiskFault::Full) => return Err(io::ErrorKind::StorageFull.into()),
+            Some(DiskFault::CutWithin) => {
+                content.extend(half);
+                return Err(io::Error::other("the power is off"));
+            }
+            Some(_) => return Err(io::Error::other("the disk reports a failure")),
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
     }
 }
 
@@ -200,12 +242,31 @@ impl Files for SimulatedDisk {
         };
         state.names.insert(path.to_owned(), number);
         let written = if fault.is_some() { content.len() / 2 } else { content.len() };
-        state.contents[number].now = content[..written].to_vec();
+        state.contents[number] = Content { now: content[..written].to_vec(), flushed: 0 };
         match fault {
             None => Ok(()),
             Some(DiskFault::Full) => Err(io::ErrorKind::StorageFull.into()),
             Some(_) => Err(io::Error::other("the disk reports a failure")),
         }
+    }
+
+    fn create(&self, path: &Path) -> io::Result<Box<dyn Write + Send>> {
+        let mut state = self.state();
+        match state.begin(Call::Fill)? {
+            None => {}
+            Some(DiskFault::Full) => return Err(io::ErrorKind::StorageFull.into()),
+            Some(_) => return Err(io::Error::other("the disk reports a failure")),
+        }
+        if !path.parent().is_some_and(|folder| state.folders.contains(folder)) {
+            return Err(io::ErrorKind::NotFound.into());
+        }
+        if state.names.contains_key(path) {
+            return Err(io::ErrorKind::AlreadyExists.into());
+        }
+        let number = state.contents.len();
+        state.contents.push(Content::default());
+        state.names.insert(path.to_owned(), number);
+        Ok(Box::new(Growing { disk: self.clone(), number }))
     }
 
     fn flush(&self, path: &Path) -> io::Result<()> {
@@ -225,7 +286,7 @@ impl Files for SimulatedDisk {
         }
         let number = state.number(path)?;
         let content = &mut state.contents[number];
-        content.flushed = Some(content.now.clone());
+        content.flushed = content.now.len();
         Ok(())
     }
 

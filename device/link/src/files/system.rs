@@ -2,7 +2,7 @@
 
 use crate::bounded;
 use std::fs::{self, File};
-use std::io::{self, Write as _};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use super::layer::{Files, Look};
@@ -26,6 +26,10 @@ impl Files for Disk {
 
     fn write(&self, path: &Path, content: &[u8]) -> io::Result<()> {
         File::create(path)?.write_all(content)
+    }
+
+    fn create(&self, path: &Path) -> io::Result<Box<dyn Write + Send>> {
+        Ok(Box::new(File::options().write(true).create_new(true).open(path)?))
     }
 
     fn flush(&self, path: &Path) -> io::Result<()> {
