@@ -1,8 +1,9 @@
 //! Attacks on every reader of what comes from outside: none may end the program, hang, or take more than its share of time and memory.
 //!
 //! `cargo test --workspace --bench attacks -- --seconds 100` shares so many seconds among the readers (the test command does so);
-//! `cargo bench -p brushwork-tests --bench attacks -- --inputs 10000000` gives each reader so many inputs. First come the worst inputs of
-//! 1 MB, then samples that were changed at random. `--only NAME`, `--seed NUMBER`; `--one NAME FILE` runs one input again.
+//! `cargo bench -p brushwork-tests --bench attacks -- --inputs 10000000` gives each reader so many inputs; with both, what one reader does not
+//! need of its time is for those after it. Inputs are small samples that were changed at random, and for a quarter of the time the worst
+//! ones of 1 MB, until all of those were tried. `--only NAME`, `--seed NUMBER`; `--one NAME FILE` runs one input again.
 //!
 //! Each reader works in a process of its own, on a thread with the stack that threads of the program have. Time is that of the thread
 //! itself, so that a busy computer blames nobody; memory is what was taken beyond what was held before.
@@ -15,7 +16,7 @@ mod targets;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{ExitCode, Stdio};
-use std::time::{Duration, Instant, SystemTime};
+use std::time::{Duration, Instant};
 
 use brushwork_child::Child;
 use brushwork_tests::workspace;
@@ -33,12 +34,16 @@ const MOST_TIME: Duration =
     if cfg!(debug_assertions) { Duration::from_secs(5) } else { Duration::from_secs(1) };
 /// As threads of the program have it.
 const STACK_BYTES: usize = 2 << 20;
+/// What the worst inputs may take of a reader's time.
+const WORST_SHARE: f64 = 0.25;
 /// An input that takes so long of the wall's time hangs.
 const HANGS_AFTER: Duration = Duration::from_secs(120);
 
 struct Args {
-    seconds: f64,
-    inputs: u64,
+    /// For all readers; of a child, for its own.
+    seconds: Option<f64>,
+    /// For each reader.
+    inputs: Option<u64>,
     seed: u64,
     only: Option<String>,
     child: Option<String>,
@@ -48,16 +53,15 @@ struct Args {
 
 fn args() -> Result<Args, String> {
     let mut args =
-        Args { seconds: 60.0, inputs: u64::MAX, seed: 1, only: None, child: None, one: None, folder: None };
+        Args { seconds: None, inputs: None, seed: 1, only: None, child: None, one: None, folder: None };
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
         let mut value = || words.next().ok_or_else(|| format!("{word} has no value"));
         let number = |text: String| text.parse::<f64>().map_err(|error| format!("{text}: {error}"));
         match word.as_str() {
-            "--seconds" => args.seconds = number(value()?)?,
+            "--seconds" => args.seconds = Some(number(value()?)?),
             "--inputs" => {
-                args.inputs = value()?.parse().map_err(|error| format!("--inputs: {error}"))?;
-                args.seconds = f64::INFINITY;
+                args.inputs = Some(value()?.parse().map_err(|error| format!("--inputs: {error}"))?);
             }
             "--seed" => args.seed = value()?.parse().map_err(|error| format!("--seed: {error}"))?,
             "--only" => args.only = Some(value()?),
@@ -68,6 +72,10 @@ fn args() -> Result<Args, String> {
             "--bench" | "--test" => {}
             other => return Err(format!("{other} is no option of the attacks")),
         }
+    }
+    // Without either, a look at them all.
+    if args.seconds.is_none() && args.inputs.is_none() {
+        args.seconds = Some(60.0);
     }
     Ok(args)
 }
@@ -85,7 +93,7 @@ fn main() -> ExitCode {
         let Some(target) = targets::named(name) else { return ExitCode::FAILURE };
         let bytes = fs::read(file).expect("the file of the attack");
         return on_a_thread(move || {
-            let folder = tempfile::tempdir().expect("a folder");
+            let folder = folder();
             let finding = Attack::new(target, folder.path()).strike(&bytes);
             println!("{}", finding.clone().unwrap_or_else(|| "nothing was found".to_owned()));
             finding.is_none()
@@ -93,7 +101,8 @@ fn main() -> ExitCode {
     }
     if let (Some(name), Some(folder)) = (&args.child, args.folder.clone()) {
         let Some(target) = targets::named(name) else { return ExitCode::FAILURE };
-        let (seed, inputs, seconds) = (args.seed, args.inputs, args.seconds);
+        let (seed, inputs) = (args.seed, args.inputs.unwrap_or(u64::MAX));
+        let seconds = args.seconds.unwrap_or(f64::INFINITY);
         return on_a_thread(move || besiege(target, &folder, seed, inputs, seconds));
     }
     parent(&args)
@@ -106,11 +115,15 @@ fn on_a_thread(work: impl FnOnce() -> bool + Send + 'static) -> ExitCode {
     if done.unwrap_or(false) { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// The processor time of this thread, ns; the wall's where the system does not tell it.
+/// The processor time of this thread; the wall's where the system does not tell it.
 fn spent() -> Duration {
-    let told = fs::read_to_string("/proc/thread-self/schedstat").ok();
-    let own = told.and_then(|text| text.split(' ').next()?.parse().ok()).map(Duration::from_nanos);
-    own.unwrap_or_else(|| SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default())
+    #[cfg(unix)]
+    {
+        let now = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+        Duration::try_from(now).unwrap_or_default()
+    }
+    #[cfg(not(unix))]
+    std::time::SystemTime::now().duration_since(std::time::SystemTime::UNIX_EPOCH).unwrap_or_default()
 }
 
 /// One reader under attack.
@@ -155,28 +168,31 @@ fn besiege(target: &'static Target, folder: &Path, seed: u64, inputs: u64, secon
     let begun = Instant::now();
     let mut attack = Attack::new(target, folder);
     let samples = (target.samples)();
-    let mut tried = 0_u64;
     let mut inputs_of = Inputs::new(seed, samples.clone(), target.words);
     let worst = Worst::new(samples, target.words);
-    // Each run takes others first, since half of the time at most is for them.
+    // Each run takes others first, since there may not be time for all.
     let first = usize::try_from(seed).unwrap_or(0).wrapping_mul(7919);
-    for number in 0..worst.len() {
-        if begun.elapsed().as_secs_f64() > seconds / 2.0 {
+    let (mut tried, mut worst_tried, mut worst_took) = (0_u64, 0, 0.0);
+    while tried < inputs {
+        let since = begun.elapsed().as_secs_f64();
+        if since >= seconds {
             break;
         }
-        // 7919 is a prime, so that all come, and those that are alike not one after the other.
-        let number = first.wrapping_add(number.wrapping_mul(7919)) % worst.len();
-        if let Some(finding) = attack.strike(&worst.get(number)) {
+        let is_worst = worst_tried < worst.len() && worst_took <= WORST_SHARE * since;
+        let finding = if is_worst {
+            // 7919 is a prime, so that all come, and those that are alike not one after the other.
+            let number = first.wrapping_add(worst_tried.wrapping_mul(7919)) % worst.len();
+            worst_tried += 1;
+            attack.strike(&worst.get(number))
+        } else {
+            attack.strike(&inputs_of.next())
+        };
+        if let Some(finding) = finding {
             println!("{finding}");
             return false;
         }
-        tried += 1;
-    }
-    let worst_tried = tried;
-    while tried < inputs.max(worst_tried) && begun.elapsed().as_secs_f64() < seconds {
-        if let Some(finding) = attack.strike(&inputs_of.next()) {
-            println!("{finding}");
-            return false;
+        if is_worst {
+            worst_took += begun.elapsed().as_secs_f64() - since;
         }
         tried += 1;
     }
@@ -194,20 +210,23 @@ fn parent(args: &Args) -> ExitCode {
         .iter()
         .filter(|target| args.only.as_ref().is_none_or(|only| target.name.contains(only)))
         .collect();
-    let seconds = args.seconds / chosen.len().max(1) as f64;
+    let begun = Instant::now();
     let kept = workspace::root().join("target/attacks");
     println!("seed {}; {} readers", args.seed, chosen.len());
     println!("{:<28} {:>10} {:>6} {:>9} {:>9}", "reader", "inputs", "1 MB", "most ms", "most MB");
     let mut found = 0;
-    for target in chosen {
-        let folder = tempfile::tempdir().expect("a folder");
+    let count = chosen.len();
+    for (number, target) in chosen.into_iter().enumerate() {
+        let folder = folder();
         let mut command = std::process::Command::new(std::env::current_exe().expect("this program"));
         command.args(["--child", target.name, "--folder"]).arg(folder.path());
         command.args(["--seed", &args.seed.to_string()]);
-        if args.inputs < u64::MAX {
-            command.args(["--inputs", &args.inputs.to_string()]);
-        } else {
-            command.args(["--seconds", &seconds.to_string()]);
+        if let Some(inputs) = args.inputs {
+            command.args(["--inputs", &inputs.to_string()]);
+        }
+        if let Some(seconds) = args.seconds {
+            let left = seconds - begun.elapsed().as_secs_f64();
+            command.args(["--seconds", &(left / (count - number) as f64).to_string()]);
         }
         let mut child = Child::spawn(&command, [Stdio::null(), Stdio::inherit(), Stdio::inherit()]);
         let input = folder.path().join("input");
@@ -229,6 +248,11 @@ fn parent(args: &Args) -> ExitCode {
         }
     }
     if found == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+/// For the inputs. In memory, where the system has such a place: each of them is written before it is read.
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir()).expect("a folder")
 }
 
 fn age(path: &Path) -> Duration {

@@ -2,9 +2,13 @@
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
+use serde_json::Value;
 
-/// What an input has at most where it is not one of the worst.
-const USUAL_BYTES: usize = 64 << 10;
+/// What most inputs have at most: what is wrong with a reader shows in a few KiB, of which it reads thousands in the time of one megabyte.
+const SMALL_BYTES: usize = 4 << 10;
+/// What one of so many has at most.
+const LARGE_BYTES: usize = 64 << 10;
+const LARGE_EVERY: usize = 256;
 /// What the worst have.
 pub const WORST_BYTES: usize = 1 << 20;
 /// Numbers at which code ends.
@@ -88,11 +92,45 @@ impl Worst {
     }
 }
 
+/// What is read like a sample and is small, so that a change of it is not lost among thousands of bytes.
+fn small(sample: &[u8]) -> Vec<u8> {
+    if sample.len() <= SMALL_BYTES {
+        return sample.to_vec();
+    }
+    if let Ok(value) = serde_json::from_slice::<Value>(sample) {
+        let shorter = [16, 8, 4, 2, 1].into_iter().map(|most| with_at_most(most, &value).to_string());
+        if let Some(text) = shorter.into_iter().find(|text| text.len() <= SMALL_BYTES) {
+            return text.into_bytes();
+        }
+    }
+    // Whole lines, where there are any.
+    let begun = &sample[..SMALL_BYTES];
+    let end = begun.iter().rposition(|byte| *byte == b'\n').map_or(SMALL_BYTES, |at| at + 1);
+    begun[..end].to_vec()
+}
+
+/// The same JSON with so many entries in each list. An object with many keys is a list; one with few needs each of them.
+fn with_at_most(most: usize, value: &Value) -> Value {
+    const FEW: usize = 16;
+    match value {
+        Value::Array(entries) => entries.iter().take(most).map(|entry| with_at_most(most, entry)).collect(),
+        Value::Object(entries) => {
+            let kept = if entries.len() > FEW { most } else { FEW };
+            let shorter =
+                entries.iter().take(kept).map(|(key, entry)| (key.clone(), with_at_most(most, entry)));
+            Value::Object(shorter.collect())
+        }
+        Value::Null | Value::Bool(_) | Value::Number(_) | Value::String(_) => value.clone(),
+    }
+}
+
 /// Inputs one after the other, the same for the same seed.
 #[derive(Debug)]
 pub struct Inputs {
     random: ChaCha8Rng,
     samples: Vec<Vec<u8>>,
+    /// Each sample, or a small one like it.
+    small: Vec<Vec<u8>>,
     words: Vec<Vec<u8>>,
 }
 
@@ -101,7 +139,8 @@ impl Inputs {
         let words =
             words.iter().chain(&PIECES).chain(&NUMBERS).map(|word| word.as_bytes().to_vec()).collect();
         let samples = if samples.is_empty() { vec![Vec::new()] } else { samples };
-        Self { random: ChaCha8Rng::seed_from_u64(seed), samples, words }
+        let small = samples.iter().map(|sample| small(sample)).collect();
+        Self { random: ChaCha8Rng::seed_from_u64(seed), samples, small, words }
     }
 
     fn below(&mut self, limit: usize) -> usize {
@@ -123,9 +162,9 @@ impl Inputs {
                 (0..count).map(|_| u8::try_from(self.random.next_u32() & 0xFF).unwrap_or(0)).collect()
             }
             1 => {
-                let sample = self.below(self.samples.len());
-                let range = self.range(self.samples[sample].len());
-                self.samples[sample][range].to_vec()
+                let sample = self.below(self.small.len());
+                let range = self.range(self.small[sample].len());
+                self.small[sample][range].to_vec()
             }
             _ => {
                 let word = self.below(self.words.len());
@@ -137,7 +176,10 @@ impl Inputs {
     /// The next one.
     pub fn next(&mut self) -> Vec<u8> {
         let sample = self.below(self.samples.len());
-        let mut input = self.samples[sample].clone();
+        let (mut input, most_bytes) = match self.below(LARGE_EVERY) {
+            0 => (self.samples[sample].clone(), LARGE_BYTES),
+            _ => (self.small[sample].clone(), SMALL_BYTES),
+        };
         for _ in 0..=self.below(8) {
             let range = self.range(input.len());
             match self.below(6) {
@@ -153,7 +195,7 @@ impl Inputs {
                 3 => {
                     let times = 1 << self.below(10);
                     let piece = if self.below(2) == 0 { self.piece() } else { input[range.clone()].to_vec() };
-                    let most = USUAL_BYTES.saturating_sub(input.len());
+                    let most = most_bytes.saturating_sub(input.len());
                     let many: Vec<u8> =
                         piece.iter().copied().cycle().take(most.min(piece.len() * times)).collect();
                     drop(input.splice(range.start..range.start, many));
@@ -165,7 +207,7 @@ impl Inputs {
                 }
             }
         }
-        input.truncate(USUAL_BYTES);
+        input.truncate(most_bytes);
         input
     }
 }

@@ -24,8 +24,8 @@ use brushwork_mcp_client::firmware::suit_model;
 use brushwork_mcp_wire::canopen::describe_frame;
 use brushwork_mcp_wire::models;
 use brushwork_mcp_wire::packet_serial::{
-    Address, COMMANDS, FramerEvent, Generation, ReplyProgress, Request, RequestFramer, describe_event,
-    describe_reply, encode_reply_named, parse_reply,
+    Address, COMMANDS, Command, FramerEvent, Generation, ReplyProgress, Request, RequestFramer,
+    describe_event, describe_reply, encode_reply_named, lookup, parse_reply,
 };
 use brushwork_motion_mind_wire as mind;
 use brushwork_plant::faults::Fault;
@@ -201,25 +201,25 @@ pub static TARGETS: &[Target] = &[
         name: "kept backup",
         samples: || kept("backups"),
         words: JSON,
-        reader: |folder| keeper(folder, "backups"),
+        reader: |folder| keeper(folder, "backups", open_backups),
     },
     Target {
         name: "kept journal",
         samples: || kept("journals"),
         words: JSON,
-        reader: |folder| keeper(folder, "journals"),
+        reader: |folder| keeper(folder, "journals", |store, unit| drop(store.open_journals(unit))),
     },
     Target {
         name: "kept count of saves",
         samples: || kept("wear"),
         words: JSON,
-        reader: |folder| keeper(folder, "wear"),
+        reader: |folder| keeper(folder, "wear", |store, unit| drop(store.wear(unit))),
     },
     Target {
         name: "kept EEPROM",
         samples: || kept("eeprom"),
         words: JSON,
-        reader: |folder| keeper(folder, "eeprom"),
+        reader: |folder| keeper(folder, "eeprom", |store, unit| drop(store.eeprom(unit))),
     },
     Target {
         name: "tuning report",
@@ -271,13 +271,13 @@ pub static TARGETS: &[Target] = &[
     },
     Target {
         name: "packet serial, requests",
-        samples: Vec::new,
+        samples: packets,
         words: &["\u{0}\u{80}"],
         reader: |_| Box::new(|bytes, _| requests(bytes)),
     },
     Target {
         name: "packet serial, replies",
-        samples: Vec::new,
+        samples: packets_back,
         words: &["MCP266 2x60A v1.0.0\n\0"],
         reader: |_| Box::new(|bytes, _| replies(bytes)),
     },
@@ -289,7 +289,7 @@ pub static TARGETS: &[Target] = &[
     },
     Target {
         name: "Motion Mind, frames",
-        samples: Vec::new,
+        samples: frames_of_mind,
         words: &["\u{1d}\u{1}", "\u{0}"],
         reader: |_| Box::new(|bytes, _| frames(bytes)),
     },
@@ -502,21 +502,16 @@ fn kept(kind: &str) -> Vec<Vec<u8>> {
     all_of(&format!("{KEPT}/{kind}")).into_iter().take(3).collect()
 }
 
-/// A folder of what is kept, in which one file of a kind is replaced by the input each time.
-fn keeper(folder: &Path, kind: &'static str) -> Reader {
+/// A folder with one kept file of a kind, which is replaced by the input each time, and how that is read.
+fn keeper(folder: &Path, kind: &str, read: fn(&Store, &UnitId)) -> Reader {
     let (source, root) = (workspace::root().join(KEPT), folder.join("kept"));
-    let mut replaced = None;
-    for path in below(KEPT) {
-        let copy = root.join(path.strip_prefix(&source).expect("it lies below"));
-        fs::create_dir_all(copy.parent().expect("it has a folder")).expect("the folder is the attack's");
-        fs::copy(&path, &copy).expect("the folder is the attack's");
-        if copy.strip_prefix(&root).is_ok_and(|path| path.starts_with(kind))
-            && copy.to_string_lossy().contains("netport")
-        {
-            replaced = Some(copy);
-        }
-    }
-    let replaced = replaced.expect("there is one of the kind");
+    let is_meant = |path: &PathBuf| {
+        let place = path.strip_prefix(&source).expect("it lies below");
+        place.starts_with(kind) && place.to_string_lossy().contains("netport")
+    };
+    let path = below(KEPT).into_iter().find(is_meant).expect("there is one of the kind");
+    let replaced = root.join(path.strip_prefix(&source).expect("it lies below"));
+    fs::create_dir_all(replaced.parent().expect("it has a folder")).expect("the folder is the attack's");
     let unit = UnitId {
         model: "mcp266".to_owned(),
         place: "tmp-netport".to_owned(),
@@ -527,14 +522,14 @@ fn keeper(folder: &Path, kind: &'static str) -> Reader {
     let store = Store::at(root);
     Box::new(move |bytes, _| {
         fs::write(&replaced, bytes).expect("the folder is the attack's");
-        drop(store.wear(&unit));
-        drop(store.eeprom(&unit));
-        drop(store.raw_writes(&unit));
-        drop(store.open_journals(&unit));
-        for backup in store.backups(Some(&unit)) {
-            drop(backup.open());
-        }
+        read(&store, &unit);
     })
+}
+
+fn open_backups(store: &Store, unit: &UnitId) {
+    for backup in store.backups(Some(unit)) {
+        drop(backup.open());
+    }
 }
 
 fn reports() -> Vec<Vec<u8>> {
@@ -597,6 +592,40 @@ fn target(bytes: &[u8]) {
 
 /// No sound description of simulated units is longer; shorter ones, which would start their threads, have their tests.
 const LONGEST_SOUND: usize = 200;
+
+/// Bytes that come without a pause, as [`requests`] and [`frames`] take them.
+fn without_pause(bytes: &[u8]) -> impl Iterator<Item = u8> {
+    bytes.iter().flat_map(|byte| [*byte, 0])
+}
+
+/// Any request of a command that the generation has.
+fn request_of(number: u8, generation: Generation) -> Option<Request> {
+    let form = lookup(number)?.form(generation)?;
+    Some(Request::new(Address::DEFAULT, number, &vec![1; form.request.len()]))
+}
+
+/// One of each command, of each generation.
+fn packets() -> Vec<Vec<u8>> {
+    let of = |(index, generation): (u8, Generation)| {
+        let requests = COMMANDS.iter().filter_map(move |command| request_of(command.number, generation));
+        let packets = requests.filter_map(move |request| request.encode(generation).ok());
+        let bytes = packets.flat_map(|packet| without_pause(&packet).collect::<Vec<u8>>());
+        [index].into_iter().chain(bytes).collect()
+    };
+    (0..).zip(Generation::ALL).map(of).collect()
+}
+
+/// Replies of the newest generation to some commands.
+fn packets_back() -> Vec<Vec<u8>> {
+    let newest = Generation::ALL.len() - 1;
+    let generation = Generation::ALL[newest];
+    let of = |(index, command): (usize, &Command)| {
+        let request = request_of(command.number, generation)?;
+        let reply = encode_reply_named(&request, generation, |_| Some(1.into())).ok()?;
+        Some([newest, index].iter().filter_map(|number| u8::try_from(*number).ok()).chain(reply).collect())
+    };
+    COMMANDS.iter().enumerate().step_by(8).filter_map(of).collect()
+}
 
 fn requests(data: &[u8]) {
     let Some((&first, arrivals)) = data.split_first() else { return };
@@ -663,6 +692,20 @@ fn adapter(bytes: &[u8]) {
             let _ = client.take(frame.bytes());
         }
     }
+}
+
+fn frames_of_mind() -> Vec<Vec<u8>> {
+    let commands = [
+        mind::Command::ChangeSpeed(300),
+        mind::Command::MoveToAbsolute(-70_000),
+        mind::Command::Write { register: 12, value: 5 },
+        mind::Command::Read(0xFFFF_FFFF),
+        mind::Command::ReadRegister(3),
+        mind::Command::Restore,
+    ];
+    let frames =
+        commands.iter().filter_map(|command| mind::encode_frame(mind::Address::FACTORY, command).ok());
+    frames.map(|frame| without_pause(&frame).collect()).collect()
 }
 
 fn frames(data: &[u8]) {
