@@ -23,9 +23,8 @@ mod killing {
 
     use brushwork_motion_mind_sim::{Mode, MotionMind, MotionMindBus, MotionMindConfig};
     use brushwork_plant::machine::Machine;
-    use brushwork_tests::hands::{Hands, Key};
+    use brushwork_tests::hands::OpenWindow;
     use brushwork_tests::program::{Child, Program};
-    use brushwork_tests::screen::{Screen, on_display};
     use brushwork_tests::served::{Off, Served, mcp, motion_mind};
     use brushwork_tests::wait;
 
@@ -35,12 +34,8 @@ mod killing {
     const BUSY: usize = 8;
     /// A motor that is driven for so long is not stopped by anybody.
     const NEVER: Duration = Duration::from_secs(5);
-    /// A window has opened on a controller when so much is green.
-    const GREEN_OF_INDICATORS: usize = 100;
     /// How often a program is started that finds the machine too crowded to drive.
     const TRIES: usize = 20;
-    /// How long the device thread may take to arm.
-    const ARMING: Duration = Duration::from_millis(1500);
     /// Moments of an attack lie so far apart within a run, in so many steps.
     const MOMENTS: (Duration, u32) = (Duration::from_millis(17), 13);
 
@@ -240,58 +235,49 @@ mod killing {
     /// One attack, at a moment that depends on its turn.
     fn once<M: Machine + 'static>(served: &Served<M>, attack: Attack, turn: u32) -> Option<Off> {
         let (step, moments) = MOMENTS;
+        let moment = step * (turn % moments);
+        let target = served.target.as_str();
+        let drive = ["drive", "-c", target, "--motor", "1", "--duty", "40", "--for", "600"];
+        let tune = ["tune", "velocity", "-c", target, "--dry-run"];
+        match attack {
+            Attack::Drive => killed(served, moment, || Program::start(BRUSHWORK, &drive)),
+            Attack::Tune => killed(served, moment, || Program::start(BRUSHWORK, &tune)),
+            Attack::Window | Attack::Display => {
+                let mut window = OpenWindow::on(BRUSHWORK, served);
+                let drives = (0..TRIES).any(|_| {
+                    window.drive(served);
+                    thread::sleep(moment);
+                    window.program.is_running() && served.look().0
+                });
+                assert!(drives, "a machine with room for a window that drives");
+                let strike = || match attack {
+                    Attack::Display => window.screen.kill(),
+                    Attack::Drive | Attack::Tune | Attack::Window => window.program.signal("KILL"),
+                };
+                served.off_after(strike, NEVER)
+            }
+        }
+    }
+
+    /// Kills a program while it drives.
+    fn killed<M: Machine + 'static>(
+        served: &Served<M>,
+        moment: Duration,
+        start: impl Fn() -> Program,
+    ) -> Option<Off> {
         let drives = |program: &mut Program| {
             let drives_or_ended = || served.look().0 || !program.is_running();
             wait::until("a driven motor, or the end", drives_or_ended, || "it stands".to_owned());
             program.is_running()
         };
-        let begun = (0..TRIES).map(|_| begin(served, attack)).find_map(|(mut program, screen)| {
+        let begun = (0..TRIES).map(|_| start()).find_map(|mut program| {
             let lives = drives(&mut program) && {
-                thread::sleep(step * (turn % moments));
+                thread::sleep(moment);
                 drives(&mut program)
             };
-            lives.then_some((program, screen))
+            lives.then_some(program)
         });
-        let (program, screen) = begun.expect("a machine with room for a program that drives");
-        let strike = || match (&screen, attack) {
-            (Some(screen), Attack::Display) => screen.kill(),
-            (Some(_) | None, _) => program.signal("KILL"),
-        };
-        served.off_after(strike, NEVER)
-    }
-
-    /// Starts what is attacked.
-    fn begin<M: Machine + 'static>(served: &Served<M>, attack: Attack) -> (Program, Option<Screen>) {
-        let target = served.target.as_str();
-        match attack {
-            Attack::Drive => {
-                let words = ["drive", "-c", target, "--motor", "1", "--duty", "40", "--for", "600"];
-                (Program::start(BRUSHWORK, &words), None)
-            }
-            Attack::Tune => {
-                (Program::start(BRUSHWORK, &["tune", "velocity", "-c", target, "--dry-run"]), None)
-            }
-            Attack::Window | Attack::Display => {
-                let (window, screen) = driving_window(served);
-                (window, Some(screen))
-            }
-        }
-    }
-
-    /// A window whose slider was moved by keys.
-    fn driving_window<M: Machine + 'static>(served: &Served<M>) -> (Program, Screen) {
-        let screen = Screen::start();
-        let mut command = on_display(BRUSHWORK, screen.display());
-        command.arg("--open").arg(&served.target);
-        let window = Program::spawn(command);
-        let connected = screen.wait_for(|picture| picture.green() >= GREEN_OF_INDICATORS);
-        assert!(connected.is_some(), "no indicator is green: {:?}", window.finish(Duration::ZERO));
-        let hands = Hands::at(screen.display());
-        hands.click(640, 700);
-        hands.focus();
-        hands.press(&[Key::Control, Key::Char('3')]);
-        let drive = || hands.drive(|| thread::sleep(ARMING), || served.look().0);
-        wait::until("a slider that moves its motor", drive, || "it stands".to_owned());
-        (window, screen)
+        let program = begun.expect("a machine with room for a program that drives");
+        served.off_after(|| program.signal("KILL"), NEVER)
     }
 }

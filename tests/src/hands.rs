@@ -2,8 +2,9 @@
 
 use std::collections::HashMap;
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
+use brushwork_plant::machine::Machine;
 use x11rb::connection::Connection as _;
 use x11rb::protocol::xproto::{
     BUTTON_PRESS_EVENT, BUTTON_RELEASE_EVENT, ConnectionExt as _, InputFocus, KEY_PRESS_EVENT,
@@ -12,8 +13,16 @@ use x11rb::protocol::xproto::{
 use x11rb::protocol::xtest::ConnectionExt as _;
 use x11rb::rust_connection::RustConnection;
 
+use crate::program::Program;
+use crate::screen::{Screen, on_display};
+use crate::served::{Served, guardians_of};
+use crate::wait;
+
 /// Between two strokes, so that each is a frame of its own.
 const STROKE: Duration = Duration::from_millis(60);
+
+/// Strokes until a slider is found.
+const WIDGETS: usize = 200;
 
 /// Keys beside letters and digits, by their X names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -48,6 +57,57 @@ impl Key {
             Self::Control => 0xFFE3,
             Self::Shift => 0xFFE1,
         }
+    }
+}
+
+/// A window has opened on a controller when so much is green.
+const GREEN_OF_INDICATORS: usize = 100;
+/// How long a screen may take to be armed on a crowded machine.
+const ARMING: Duration = Duration::from_secs(10);
+
+/// A window of the program on a display of its own, with somebody at its keyboard.
+pub struct OpenWindow {
+    /// The window.
+    pub program: Program,
+    /// Its display.
+    pub screen: Screen,
+    hands: Hands,
+}
+
+impl OpenWindow {
+    /// That of `program`, opened on a controller, with the screen that drives motors in front.
+    ///
+    /// # Panics
+    /// When it does not connect.
+    #[must_use]
+    pub fn on<M: Machine + 'static>(program: &str, served: &Served<M>) -> Self {
+        let screen = Screen::start();
+        let mut command = on_display(program, screen.display());
+        command.arg("--open").arg(&served.target);
+        let program = Program::spawn(command);
+        if screen.wait_for(|picture| picture.green() >= GREEN_OF_INDICATORS).is_none() {
+            panic!("no indicator is green: {:?}", program.finish(Duration::ZERO));
+        }
+        let hands = Hands::at(screen.display());
+        hands.click(640, 700);
+        hands.focus();
+        hands.press(&[Key::Control, Key::Char('3')]);
+        Self { program, screen, hands }
+    }
+
+    /// Drives the motor by a slider. A window that draws too seldom on a crowded machine stops it again soon.
+    ///
+    /// # Panics
+    /// When it cannot be driven.
+    pub fn drive<M: Machine + 'static>(&self, served: &Served<M>) {
+        let armed = || {
+            let until = Instant::now() + ARMING;
+            while guardians_of(self.program.id()).is_empty() && Instant::now() < until {
+                thread::sleep(STROKE);
+            }
+        };
+        let drive = || self.hands.drive(armed, || served.look().0);
+        wait::until("a slider that moves its motor", drive, || "it stands".to_owned());
     }
 }
 
@@ -108,12 +168,13 @@ impl Hands {
     }
 
     /// Arms the screen that is shown, and presses Page Up on one widget after the other until something is driven: on anything but a
-    /// slider it changes nothing that moves. Says whether it was. `armed` waits until the screen is.
+    /// slider it changes nothing that moves. Says whether it was. `armed` waits until the screen is. A window goes on by one widget a
+    /// frame, so that a slow one makes fewer steps than there are strokes.
     pub fn drive(&self, armed: impl FnOnce(), is_driven: impl Fn() -> bool) -> bool {
         self.press(&[Key::Escape]);
         self.press(&[Key::Control, Key::Shift, Key::Char('a')]);
         armed();
-        (0..80).any(|_| {
+        (0..WIDGETS).any(|_| {
             self.press(&[Key::Tab]);
             self.press(&[Key::PageUp]);
             is_driven()

@@ -117,6 +117,18 @@ pub struct Off {
     pub driven_for: Duration,
 }
 
+/// The guardians of a process, as the list of processes names them.
+#[must_use]
+pub fn guardians_of(program: u32) -> Vec<u32> {
+    let words = format!("guardian\0{program}\0");
+    let processes = std::fs::read_dir("/proc").into_iter().flatten().flatten();
+    let of_this = processes.filter(|process| {
+        let line = std::fs::read(process.path().join("cmdline")).unwrap_or_default();
+        String::from_utf8_lossy(&line).contains(&words)
+    });
+    of_this.filter_map(|process| process.file_name().to_str()?.parse().ok()).collect()
+}
+
 /// A simulated controller as the program itself starts it, by its family and what follows `sim:`.
 ///
 /// # Panics

@@ -10,8 +10,12 @@ use std::time::Duration;
 
 use brushwork_mcp_wire::packet_serial::{Address, Generation, Request, number};
 use brushwork_plant::machine::Machine;
+#[cfg(target_os = "linux")]
+use brushwork_tests::foreign::is_left_out;
+#[cfg(target_os = "linux")]
+use brushwork_tests::hands::OpenWindow;
 use brushwork_tests::program::Program;
-use brushwork_tests::served::{Served, mcp, motion_mind, simulated};
+use brushwork_tests::served::{Served, guardians_of, mcp, motion_mind, simulated};
 use brushwork_tests::simulated::{OnPty, is_driven};
 use brushwork_tests::wait;
 use rustix::process::{Pid, Signal, kill_process};
@@ -102,20 +106,11 @@ fn a_program_that_stands_still_while_it_drives_is_ended_and_its_motor_stopped() 
     assert!(took > Duration::from_millis(200), "the dead-man inside comes first: {took:?}");
 }
 
-/// The guardians of a process, as the list of processes names them.
-pub fn of(program: u32) -> Vec<u32> {
-    let words = format!("guardian\0{program}\0");
-    let processes = std::fs::read_dir("/proc").into_iter().flatten().flatten();
-    let of_this = processes.filter(|process| {
-        let line = std::fs::read(process.path().join("cmdline")).unwrap_or_default();
-        String::from_utf8_lossy(&line).contains(&words)
-    });
-    of_this.filter_map(|process| process.file_name().to_str()?.parse().ok()).collect()
-}
-
 /// Sends a signal to the guardians of a process.
 pub fn signal(program: u32, signal: Signal) {
-    for number in of(program).into_iter().filter_map(|number| Pid::from_raw(i32::try_from(number).ok()?)) {
+    for number in
+        guardians_of(program).into_iter().filter_map(|number| Pid::from_raw(i32::try_from(number).ok()?))
+    {
         kill_process(number, signal).expect("it is there");
     }
 }
@@ -168,14 +163,42 @@ fn a_port_that_has_one_owner_is_opened_and_stopped_when_that_one_is_gone() {
 
 #[cfg(target_os = "linux")]
 #[test]
+fn a_window_whose_x_server_is_killed_leaves_no_motor_driven() {
+    if is_left_out("xvfb") {
+        return;
+    }
+    loses_its_display(&Served::on_pty(motion_mind(), ",family=motion-mind"));
+    loses_its_display(&Served::on_pty(mcp(), ",stream=usb"));
+}
+
+#[cfg(target_os = "linux")]
+fn loses_its_display<M: Machine + 'static>(served: &Served<M>) {
+    // A window that draws too seldom on a crowded machine stops its motor before anybody takes its display away.
+    let window = OpenWindow::on(BRUSHWORK, served);
+    let drives = (0..TRIES).any(|_| {
+        window.drive(served);
+        served.look().0
+    });
+    assert!(drives, "a machine with room for a window that drives");
+    let took = served.off_after(|| window.screen.kill(), SOON);
+    println!("the X server of a window on {} killed: off after {took:?}", served.target);
+    assert!(took.is_some(), "the motor is off");
+    assert!(
+        !window.program.finish(wait::LIMIT).status.success(),
+        "a window without a display ends, and says so"
+    );
+}
+
+#[cfg(target_os = "linux")]
+#[test]
 fn it_is_there_while_something_is_armed_and_leaves_nothing_behind() {
     let served = Served::on_pty(mcp(), ",stream=usb");
     let mut program = driving(&served);
     let first = program.id();
-    assert_eq!(of(first).len(), 1, "it is named in the list of processes");
+    assert_eq!(guardians_of(first).len(), 1, "it is named in the list of processes");
     program.signal("INT");
     wait::until("its end", || !program.is_running(), || "it runs".to_owned());
-    assert_eq!(of(first), [0; 0], "it is gone before the program is");
+    assert_eq!(guardians_of(first), [0; 0], "it is gone before the program is");
     // The port is free again at once.
     let again = drive(&served, "0.2");
     assert!(again.finish(wait::LIMIT).status.success());
@@ -183,5 +206,5 @@ fn it_is_there_while_something_is_armed_and_leaves_nothing_behind() {
     let program = driving(&served);
     let second = program.id();
     program.signal("KILL");
-    wait::until("no guardian", || of(second).is_empty(), || "it is there".to_owned());
+    wait::until("no guardian", || guardians_of(second).is_empty(), || "it is there".to_owned());
 }
