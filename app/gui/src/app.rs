@@ -119,6 +119,8 @@ impl App {
         if keys::take_stop_key(&ctx).is_some() {
             self.stop();
         }
+        // On a busy computer a frame may take most of a motion's life: it lives on from its begin and from its end.
+        self.renew();
         if let Some((bytes, most)) = text_field::refuse_long_paste(&ctx) {
             self.model.messages.fail(WindowStatusMessage::PasteTooLong { bytes, most });
         }
@@ -585,12 +587,18 @@ impl App {
         }
     }
 
+    /// Lets the motion of the screen that is shown live on, if that is armed: for what.
+    fn renew(&self) -> Option<ArmScope> {
+        let armed_for = |scope: &ArmScope| self.model.front.link.arming.is_armed_for(*scope);
+        let scope = self.model.arm_scope().filter(armed_for)?;
+        self.device()?.renew();
+        Some(scope)
+    }
+
     /// While armed: sends what the sliders ask for and lets the motion live on.
     fn drive(&mut self, ctx: &Context) {
-        let armed_for = |scope| self.model.front.link.arming.is_armed_for(scope);
-        let Some(scope) = self.model.arm_scope().filter(|scope| armed_for(*scope)) else { return };
+        let Some(scope) = self.renew() else { return };
         let Some(device) = self.links.device(self.model.front.id()) else { return };
-        device.renew();
         let front = &mut self.model.front;
         // A full queue takes it in the next frame.
         if let Some(drive) = front.family().to_send(scope, front.sliders())
