@@ -253,7 +253,8 @@ fn a_method_is_picked_and_its_rule_stands_beside_the_others() {
         assert!(is_by_it || report.verdict == Verdict::Refused, "{:?}", report.causes);
         if report.verdict != Verdict::Refused {
             let printed = ending.stdout.join("\n");
-            for words in [rule, "phase margin", "delay margin", "bandwidth"] {
+            let loads = ["inertia, stable", "load change", "inertia x 0.5", "steady load held"];
+            for words in [rule, "phase margin", "delay margin", "bandwidth"].into_iter().chain(loads) {
                 assert!(printed.contains(words), "{words}: {printed}");
             }
         }
@@ -272,8 +273,32 @@ fn a_report_whose_name_ends_in_html_is_one_page_with_plots() {
     assert!(page.starts_with("<!DOCTYPE html>") && page.ends_with("</body></html>\n"));
     assert!(page.contains("<h2>The run as it was measured</h2>"), "{page}");
     if matches!(code(&ending), Some(TUNED | TUNED_WITH_WARNINGS)) {
-        assert!(page.contains("phase margin") && page.matches("<svg").count() >= 7, "{page}");
+        assert!(
+            page.contains("phase margin")
+                && page.contains("inertia x 0.5")
+                && page.matches("<svg").count() >= 7,
+            "{page}"
+        );
     }
+}
+
+#[test]
+fn what_load_the_loop_stands_is_in_the_figures_for_programs_too() {
+    let words = ["tune", "velocity", "-c", "sim:mcp266", "--dry-run", "--json"];
+    let ending = Program::start(BRUSHWORK, &words).finish(LIMIT);
+    if code(&ending) == Some(REFUSED) {
+        return;
+    }
+    let printed: serde_json::Value = serde_json::from_str(&ending.stdout.join("\n")).expect("it is JSON");
+    let stood = &printed["load_change"];
+    let low = stood["stable"]["low"].as_f64().expect("a light load makes a velocity loop unstable");
+    assert!(low > 0.0 && low < 0.5, "{stood}");
+    let row = |inertia: f64| {
+        let rows = stood["changed"].as_array().expect("rows");
+        rows.iter().find(|row| row["change"]["inertia"] == inertia).expect("it is a row")["ms"].as_f64()
+    };
+    assert!(row(0.5) > row(1.0) && row(1.0) > Some(1.0), "{stood}");
+    assert!(stood["held"]["duty"].as_f64().is_some_and(|duty| duty > 0.1 && duty < 0.6), "{stood}");
 }
 
 #[test]

@@ -4,6 +4,7 @@ use brushwork_core::tune::law::{AnyLaw, Report};
 use brushwork_tuning::alternatives::{Alternative, Rule, alternatives};
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::law::Law;
+use brushwork_tuning::load_change::{HEADS, LoadChange};
 use brushwork_tuning::promise::Promise;
 use brushwork_tuning::registers::RegisterTable as _;
 use brushwork_tuning::report::Verdict;
@@ -42,6 +43,9 @@ pub fn summary(report: &Report) -> Value {
         }
         if let Some(trajectory) = report.trajectory() {
             fields.insert("trajectory".to_owned(), json!(trajectory));
+        }
+        if let Some(stood) = LoadChange::of_run(report) {
+            fields.insert("load_change".to_owned(), json!(stood));
         }
     }
     value
@@ -95,30 +99,7 @@ pub fn print(report: &Report, out: &mut Output) -> Result<(), OutputError> {
             range,
         );
     }
-    if let Some(step) = &report.step {
-        let (low, high) = (100.0 * step.duties.0, 100.0 * step.duties.1);
-        row("step", format!("{low:.0} to {high:.0} % duty"), String::new());
-        let (gain, doubt) = step.gain_counts_per_s;
-        row("gain of the step", format!("{gain:.0} counts/s"), format!("+- {:.1} %", 100.0 * doubt / gain));
-    }
-    if let Some(relay) = &report.relay {
-        let percent = |(value, doubt): (f64, f64)| format!("+- {:.1} %", 100.0 * doubt / value.abs());
-        let (low, high) = (100.0 * relay.duties.0, 100.0 * relay.duties.1);
-        row(
-            "relay",
-            format!("{low:.0} and {high:.0} % duty"),
-            format!("about {:.0} counts/s", relay.set_speed),
-        );
-        row(
-            "hysteresis",
-            format!("{:.0} counts/s", relay.hysteresis),
-            format!("noise {:.0} counts/s", relay.noise),
-        );
-        row("limit cycle", format!("{:.1} ms", 1e3 * relay.period_s.0), percent(relay.period_s));
-        let gain = relay.cycle_gain();
-        row("gain for the cycle", format!("{:.3e} duty/(counts/s)", gain.0), percent(gain));
-        row("gain at 0 Hz", format!("{:.0} counts/s", relay.static_gain.0), percent(relay.static_gain));
-    }
+    experiments(report, &mut row);
     if let Some(seen) = report.classic.filter(|_| report.request.identification != Identification::Fit) {
         row("Ku of the loop", format!("{:.3e} duty/(counts/s)", seen.ultimate_gain), String::new());
         row("Tu of the loop", format!("{:.1} ms", 1e3 * seen.ultimate_period_s), String::new());
@@ -150,6 +131,10 @@ pub fn print(report: &Report, out: &mut Output) -> Result<(), OutputError> {
             format!("{:.0} counts/s² both ways", trajectory.accel_counts_per_s2),
         );
     }
+    let stood = LoadChange::of_run(report);
+    for (name, value, what) in stood.iter().flat_map(LoadChange::rows) {
+        row(name, value, what);
+    }
     if let Some(given) = report.qpps.and_then(|qpps| report.proposed.feed_forward(qpps)) {
         row(
             "feed-forward",
@@ -158,8 +143,40 @@ pub fn print(report: &Report, out: &mut Output) -> Result<(), OutputError> {
         );
     }
     out.table(&["", "", ""], &rows)?;
+    if let Some(stood) = stood {
+        let rows: Vec<Vec<String>> = stood.changed.iter().map(|changed| changed.cells().to_vec()).collect();
+        out.table(&HEADS, &rows)?;
+    }
     print_gains(report, out)?;
     print_rules(report, out)
+}
+
+/// What a step or a relay read off.
+fn experiments(report: &Report, row: &mut dyn FnMut(&str, String, String)) {
+    if let Some(step) = &report.step {
+        let (low, high) = (100.0 * step.duties.0, 100.0 * step.duties.1);
+        row("step", format!("{low:.0} to {high:.0} % duty"), String::new());
+        let (gain, doubt) = step.gain_counts_per_s;
+        row("gain of the step", format!("{gain:.0} counts/s"), format!("+- {:.1} %", 100.0 * doubt / gain));
+    }
+    if let Some(relay) = &report.relay {
+        let percent = |(value, doubt): (f64, f64)| format!("+- {:.1} %", 100.0 * doubt / value.abs());
+        let (low, high) = (100.0 * relay.duties.0, 100.0 * relay.duties.1);
+        row(
+            "relay",
+            format!("{low:.0} and {high:.0} % duty"),
+            format!("about {:.0} counts/s", relay.set_speed),
+        );
+        row(
+            "hysteresis",
+            format!("{:.0} counts/s", relay.hysteresis),
+            format!("noise {:.0} counts/s", relay.noise),
+        );
+        row("limit cycle", format!("{:.1} ms", 1e3 * relay.period_s.0), percent(relay.period_s));
+        let gain = relay.cycle_gain();
+        row("gain for the cycle", format!("{:.3e} duty/(counts/s)", gain.0), percent(gain));
+        row("gain at 0 Hz", format!("{:.0} counts/s", relay.static_gain.0), percent(relay.static_gain));
+    }
 }
 
 /// What the textbook rules would set, with what they promise on the same model.

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use brushwork_tuning::alternatives::alternatives;
 use brushwork_tuning::law::Law as _;
+use brushwork_tuning::load_change::{Changed, HEADS, LoadChange};
 use brushwork_tuning::promise::Promise;
 use brushwork_tuning::report::Verdict;
 use brushwork_tuning::stability::StabilityMargins;
@@ -186,6 +187,7 @@ fn promised(page: &mut String, report: &Report) {
         ]);
     }
     table(page, "The loop with these gains", &["", "value", WHAT], &rows);
+    load_change(page, report);
     let rules: Vec<[String; 6]> = alternatives(report)
         .iter()
         .map(|found| {
@@ -270,6 +272,18 @@ fn promised(page: &mut String, report: &Report) {
         page,
         &Plot { limits: Some((-3.0, 1.0)), ..plot("Nyquist", "real part", "imaginary part", false, curves) },
     );
+}
+
+/// What change of its load the loop stands.
+fn load_change(page: &mut String, report: &Report) {
+    let Some(stood) = LoadChange::of_run(report) else { return };
+    let rows: Vec<[String; 3]> =
+        stood.rows().into_iter().map(|(name, value, what)| [name.to_owned(), value, what]).collect();
+    table(page, "What change of load it stands", &["", "value", WHAT], &rows);
+    let rows: Vec<[String; 5]> = stood.changed.iter().map(Changed::cells).collect();
+    let mut heads = HEADS;
+    heads[0] = "";
+    table(page, "The same step under other loads", &heads, &rows);
 }
 
 /// Degrees without the jumps of a whole turn.

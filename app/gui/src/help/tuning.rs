@@ -43,7 +43,7 @@ const HOW: [(&str, &str); 7] = [
     ),
 ];
 
-const FIGURES: [(&str, &str); 5] = [
+const FIGURES: [(&str, &str); 6] = [
     ("Overshoot", "How far a step goes beyond its setpoint, as a share of the step."),
     ("Settling", "When a step stays near its setpoint: within 5 % of a speed step, 2 % of a position step."),
     ("Load dip", "How far a load of 15 % of the stall torque drives the motor off, as a share of the step."),
@@ -54,6 +54,11 @@ const FIGURES: [(&str, &str); 5] = [
     (
         "Duty noise",
         "What the rounding of encoder counts alone does to the duty. Coarse encoders allow less gain.",
+    ),
+    (
+        "Other loads",
+        "The identified model with another inertia, other friction or a steady load, under the same gains: between which multiples of the inertia the \
+         loop stays stable and Ms stays up to 2, and the largest load that full duty still carries at the top speed of the trajectory.",
     ),
 ];
 

@@ -27,6 +27,7 @@ pub mod run;
 mod runs;
 pub mod setup;
 pub mod sketches;
+mod stood;
 pub mod which;
 mod winding;
 

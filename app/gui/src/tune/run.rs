@@ -1,10 +1,13 @@
 //! One run as the window keeps it: its report, what it looked like, and the gains that are considered now.
 
+use std::cell::OnceCell;
+
 use brushwork_core::tune::law::{AnyLaw, AnyRegisters, Report, Task, Trace, Trial, TrialRequest};
 use brushwork_link::exchange::Interruption;
 use brushwork_tuning::alternatives::{Alternative, alternatives};
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::law::Law;
+use brushwork_tuning::load_change::LoadChange;
 use brushwork_tuning::model::Gains;
 use brushwork_tuning::promise::Promise;
 use brushwork_tuning::registers::RegisterTable as _;
@@ -27,6 +30,19 @@ pub struct Shown {
     pub frequency: Vec<LoopPoint>,
     /// The ranges of its figures; `None` where the motor was not fitted.
     pub promise: Option<Promise>,
+    /// Worked out where it is drawn: it takes longer than all the rest.
+    stood: OnceCell<Option<LoadChange>>,
+}
+
+impl Shown {
+    /// What change of its load the loop stands, on the model of `report`.
+    pub fn stood(&self, report: &Report) -> Option<&LoadChange> {
+        let work_out = || {
+            let (task, gains) = considered(report, &self.registers)?;
+            LoadChange::of(&task, &gains)
+        };
+        self.stood.get_or_init(work_out).as_ref()
+    }
 }
 
 /// A stretch of the machine in which some gains were tried.
@@ -130,6 +146,7 @@ impl Run {
             forecast: forecast(&task, &gains),
             promise: self.report.fit.map(|fit| Promise::of(&task, &gains, &fit, self.report.lag.as_ref())),
             frequency: frequency_response(&task, &gains),
+            stood: OnceCell::new(),
         })
     }
 

@@ -552,6 +552,29 @@ fn a_trajectory_that_both_motors_follow_sets_the_sliders_of_the_screens() {
 }
 
 #[test]
+fn what_load_the_loop_stands_is_told_and_follows_the_gains_that_are_considered() {
+    let mut bench = tuned("Velocity Settings", Loop::Velocity);
+    assert!(bench.sees_part("Other loads: Ms stays up to 2 at"));
+    assert!(bench.sees_part("It holds a steady load of up to"));
+    press_below(&mut bench, "Other loads");
+    bench.pass_ms(500);
+    for row in ["inertia x 0.25", "inertia x 4", "friction x 2"] {
+        assert!(bench.sees_part(row), "{row}");
+    }
+    let lowest = |bench: &mut Bench| {
+        let run = run(bench, Loop::Velocity);
+        let shown = run.shown.expect("it has gains");
+        shown.stood(&run.report).and_then(|stood| stood.stable.low).expect("a light load makes it unstable")
+    };
+    let before = lowest(&mut bench);
+    bench.focus_label("M1 level");
+    for _ in 0..25 {
+        bench.key(Key::ArrowRight);
+    }
+    assert!(lowest(&mut bench) > before, "stiffer gains stand less");
+}
+
+#[test]
 fn an_axis_with_position_limits_stays_within_them_unless_a_person_says_otherwise() {
     let mut config = config("small-gearmotor");
     let mut settings = Controller::new(config.clone()).expect("the preset is sound").stored_settings();
