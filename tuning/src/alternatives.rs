@@ -75,7 +75,7 @@ impl Rule {
         match identification {
             Identification::Fit => Self::Search,
             Identification::Step => Self::Simc,
-            Identification::Relay => Self::TyreusLuyben,
+            Identification::Relay | Identification::Controller => Self::TyreusLuyben,
         }
     }
 
@@ -131,7 +131,13 @@ pub fn seen<L: Law>(report: &Report<L>, task: &Task<L>) -> Classic {
         }
         (None, None) => (task.plant.gain_counts_per_s, task.plant.tau_s, 0.0),
     };
-    Classic::of_model(gain, tau_s, dead_s.max(lag_s))
+    let seen = Classic::of_model(gain, tau_s, dead_s.max(lag_s));
+    // The controller's own test has found the ultimate point itself.
+    report.own_test.map_or(seen, |test| Classic {
+        ultimate_gain: test.ultimate_gain(),
+        ultimate_period_s: test.period_s,
+        ..seen
+    })
 }
 
 /// All rules on a run of the velocity loop; none on other runs, and on those without a model.
@@ -174,7 +180,7 @@ pub(crate) fn proposed<L: Law>(report: &Report<L>, task: &Task<L>) -> Option<(De
 }
 
 fn gains_of<L: Law>(rule: Rule, report: &Report<L>, task: &Task<L>, seen: &Classic) -> Option<Gains> {
-    let (gain, time_s) = rule.pi(seen, report.relay.is_some())?;
+    let (gain, time_s) = rule.pi(seen, report.relay.is_some() || report.own_test.is_some())?;
     let p = gain * task.qpps;
     Some(Gains { velocity: Pid { p, i: p / time_s, d: 0.0 }, ..Gains::default() })
 }

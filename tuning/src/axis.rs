@@ -100,6 +100,9 @@ pub enum AxisError {
     /// The link is gone.
     #[error("the link is gone: {0}")]
     LinkLost(String),
+    /// What the controller makes of this command is a guess, and this controller is a real one.
+    #[error("what a controller makes of this command is a guess, which is sent to simulated ones only")]
+    OnlySimulated,
     /// The controller does not take this command.
     #[error("the controller refused: {0}")]
     Refused(String),
@@ -127,6 +130,15 @@ pub trait Axis {
     fn raw_speed(&mut self) -> Result<i32, AxisError>;
     /// Sets the time-out after which the controller stops by itself, ms. Firmware without it refuses.
     fn set_stream_timeout(&mut self, milliseconds: u32) -> Result<(), AxisError>;
+    /// Has the controller's own relay test of its velocity loop begin: from now on it adds this duty, raw, to the one of now or takes it away, as the
+    /// speed is so many counts/s below or above the one of now. Gives the hysteresis that it takes, which may be none. It must not come twice.
+    fn start_own_test(&mut self, _height_raw: u32, _hysteresis: u32) -> Result<(Exchange, u32), AxisError> {
+        Err(AxisError::Refused("it has no test of its own".into()))
+    }
+    /// What that test found: half of the oscillation of the speed, counts/s, and its period, µs. Both 0 where it has found nothing yet.
+    fn read_own_test(&mut self) -> Result<[u32; 2], AxisError> {
+        Err(AxisError::Refused("it has no test of its own".into()))
+    }
     /// Between which positions the motor is to stay, counts of the encoder. A controller that can watch that too is given them.
     fn set_travel(&mut self, _counts: (i64, i64)) -> Result<(), AxisError> {
         Ok(())

@@ -182,7 +182,7 @@ causes! {
     LoopOff "The controller's loop was left switched off (DISABLEPID in FUNCTION, or MF, in RAM), since with this it could drive the motor \
         away. When the fault is remedied, arm or drive again: that switches the loop on where the motor stands.";
     /// A step or a relay was asked for where there is none.
-    OnlyFree "Step and relay are for the velocity loop of a motor that may turn freely. Choose the method fit.";
+    OnlyFree "Step, relay and the controller's own test are for the velocity loop of a motor that may turn freely. Choose the method fit.";
     /// Between the starting duty and the highest there is no room.
     NoRoomForStep "Between the duty at which the motor starts and the highest that is allowed there is no room for a step. Allow more \
         duty, or choose the method fit.";
@@ -192,6 +192,13 @@ causes! {
     /// A relay did not bring the motor into a limit cycle.
     NoLimitCycle "The relay did not bring the motor into a steady limit cycle that is larger than the noise of its speed: the motor is too \
         quick for the samples, too slow, or its encoder too coarse. Choose the method fit.";
+    /// The controller has no relay test of its own.
+    NoOwnTest "This controller did not take the commands of a relay test of its own (84 to 89 of an MCP or RoboClaw; other families have none). \
+        Choose the method relay, which is this program's own.";
+    /// The controller's own relay test is for simulated ones.
+    OwnTestOnSimulated "The controller's own relay test (commands 84 to 89) is sent to simulated controllers only: no manual says how it drives the motor, how it ends \
+        and in which unit its result is, and with wrong wiring it can lock the controller up (MCP manual 2.4.5). Choose the method relay, \
+        which is this program's own and watches the motor.";
     /// The rule of the method has no gains for this loop.
     RuleUnstable "The rule of this method has no gains with which this loop would keep its margin. Choose the method fit.";
     /// The gains of a rule were lowered.

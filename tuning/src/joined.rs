@@ -462,6 +462,14 @@ impl<L: Law, J: Law> Axis for Joined<'_, L, J> {
         self.axis.set_stream_timeout(milliseconds)
     }
 
+    fn start_own_test(&mut self, height_raw: u32, hysteresis: u32) -> Result<(Exchange, u32), AxisError> {
+        self.axis.start_own_test(height_raw, hysteresis)
+    }
+
+    fn read_own_test(&mut self) -> Result<[u32; 2], AxisError> {
+        self.axis.read_own_test()
+    }
+
     fn set_travel(&mut self, counts: (i64, i64)) -> Result<(), AxisError> {
         self.axis.set_travel(counts)
     }

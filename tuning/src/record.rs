@@ -37,6 +37,10 @@ pub enum Entry<L: Law> {
     Timeout(u32, Result<(), AxisError>),
     /// Travel given.
     Travel((i64, i64), Result<(), AxisError>),
+    /// The controller's own relay test begun.
+    OwnTestStarted([u32; 2], Result<(Exchange, u32), AxisError>),
+    /// What it found.
+    OwnTest(Result<[u32; 2], AxisError>),
     /// Time that this computer took of the last calls; not noted where it took none.
     Stolen(Duration),
     /// Registers of a loop written, under the law's own names.
@@ -127,6 +131,18 @@ impl<L: Law> Axis for Recorder<'_, L> {
     fn set_stream_timeout(&mut self, milliseconds: u32) -> Result<(), AxisError> {
         let answer = self.axis.set_stream_timeout(milliseconds);
         self.note(Entry::Timeout(milliseconds, answer.clone()));
+        answer
+    }
+
+    fn start_own_test(&mut self, height_raw: u32, hysteresis: u32) -> Result<(Exchange, u32), AxisError> {
+        let answer = self.axis.start_own_test(height_raw, hysteresis);
+        self.note(Entry::OwnTestStarted([height_raw, hysteresis], answer.clone()));
+        answer
+    }
+
+    fn read_own_test(&mut self) -> Result<[u32; 2], AxisError> {
+        let answer = self.axis.read_own_test();
+        self.note(Entry::OwnTest(answer.clone()));
         answer
     }
 
@@ -272,6 +288,20 @@ impl<L: Law> Axis for Player<L> {
     fn set_stream_timeout(&mut self, milliseconds: u32) -> Result<(), AxisError> {
         match self.next() {
             Some(Entry::Timeout(was, answer)) if was == milliseconds => answer,
+            _ => self.stray(),
+        }
+    }
+
+    fn start_own_test(&mut self, height_raw: u32, hysteresis: u32) -> Result<(Exchange, u32), AxisError> {
+        match self.next() {
+            Some(Entry::OwnTestStarted(was, answer)) if was == [height_raw, hysteresis] => answer,
+            _ => self.stray(),
+        }
+    }
+
+    fn read_own_test(&mut self) -> Result<[u32; 2], AxisError> {
+        match self.next() {
+            Some(Entry::OwnTest(answer)) => answer,
             _ => self.stray(),
         }
     }

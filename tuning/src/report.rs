@@ -2,7 +2,7 @@
 
 use crate::cause::Cause;
 use crate::design::{Design, Task};
-use crate::experiment::{Backlash, FreeRun, Probe, RelayRun, StepRun, WindowRun};
+use crate::experiment::{Backlash, FreeRun, OwnTestRun, Probe, RelayRun, StepRun, WindowRun};
 use crate::fit::Fit;
 use crate::lag::LagFit;
 use crate::law::Law;
@@ -75,6 +75,9 @@ pub struct Report<L: Law> {
     /// The relay.
     #[serde(default)]
     pub relay: Option<RelayRun>,
+    /// The controller's own relay test.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub own_test: Option<OwnTestRun>,
     /// What the textbook experiments see in the same record.
     pub classic: Option<Classic>,
     /// The open-loop fit.

@@ -29,6 +29,8 @@ pub enum Identification {
     Step,
     /// A relay about a set speed; Tyreus-Luyben.
     Relay,
+    /// The controller's own relay test about a set speed, beside a fitted model; Tyreus-Luyben.
+    Controller,
 }
 
 /// Duty about which a step or a relay works, where none is asked for.

@@ -5,7 +5,9 @@ use crate::axis::EncoderClass;
 use crate::backlash::with_backlash;
 use crate::cause::Cause;
 use crate::design::{Goal, Task, USUAL_OVERSHOOT, design_velocity};
-use crate::experiment::{Probe, go_to, rest, run_free, run_probe, run_relay, run_step, run_window};
+use crate::experiment::{
+    Probe, go_to, rest, run_free, run_own_test, run_probe, run_relay, run_step, run_window,
+};
 use crate::experiment_guard::{ExperimentGuard, GuardOptions};
 use crate::fit::{Fit, fit};
 use crate::lag::LagFit;
@@ -124,6 +126,7 @@ fn blank<L: Law>(request: &Request<L>) -> Report<L> {
         window: None,
         step: None,
         relay: None,
+        own_test: None,
         classic: None,
         fit: None,
         qpps: None,
@@ -148,6 +151,10 @@ fn run<L: LawProbe>(
     report: &mut Report<L>,
 ) -> Result<(), Cause> {
     let request = &of_unit(guard, request, report)?;
+    if request.identification == Identification::Controller {
+        // A controller that has no such test, or may not be asked for it, says so before anything moves.
+        guard.own_test()?;
+    }
     if !guard.facts.has_duty {
         // Its loop has the motor all the time and each place comes with its time, so that a late answer says no less.
         return by_moves(guard, request, report);
@@ -177,7 +184,7 @@ fn identify<L: Law>(
     report.probe = Some(probe);
     let found = match request.excitation {
         Excitation::Free => match request.identification {
-            Identification::Fit => identify_free(guard, &probe, report)?,
+            Identification::Fit | Identification::Controller => identify_free(guard, &probe, report)?,
             Identification::Step => {
                 let run = run_step(guard, &probe, request.about_duty)?;
                 report.step = Some(run);
@@ -206,6 +213,10 @@ fn identify<L: Law>(
     match winding_of(&guard.points, &guard.drives) {
         Ok(winding) => report.winding = Some(winding),
         Err(why) => report.winding_unknown = Some(why),
+    }
+    if request.identification == Identification::Controller {
+        guard.progress("The controller tests its loop itself");
+        report.own_test = Some(run_own_test(guard, &probe, request.about_duty)?);
     }
     Ok((probe, found))
 }
@@ -245,7 +256,7 @@ fn design<L: LawProbe>(
     report.task = Some(task);
     let design = match request.identification {
         Identification::Fit => design_for(request.method, &task).ok_or(Cause::TooCoarse)?,
-        Identification::Step | Identification::Relay => {
+        Identification::Step | Identification::Relay | Identification::Controller => {
             report.classic = Some(seen(report, &task));
             let (design, is_lowered) = proposed(report, &task).ok_or(Cause::RuleUnstable)?;
             report.causes.extend(is_lowered.then_some(Cause::RuleLowered));

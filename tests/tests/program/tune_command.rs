@@ -263,6 +263,28 @@ fn a_method_is_picked_and_its_rule_stands_beside_the_others() {
 }
 
 #[test]
+fn the_controllers_own_test_is_for_simulated_ones_alone() {
+    // Behind a port a controller passes for a real one, whatever it is.
+    let bench = Bench::new(|_| {});
+    let before = bench.held();
+    let ending = bench.tune(&["--method", "controller"]).finish(LIMIT);
+    assert_eq!(code(&ending), Some(REFUSED), "{ending:?}");
+    let said = [ending.stdout.join("\n"), ending.stderr.join("\n")].concat();
+    assert!(said.contains("sent to simulated controllers only"), "{ending:?}");
+    assert_eq!(bench.report().causes, [Cause::OwnTestOnSimulated]);
+    assert!(bench.report().probe.is_none(), "nothing was moved");
+    assert_eq!(bench.held(), before, "{ending:?}");
+    let words = ["tune", "velocity", "-c", "sim:mcp266", "--method", "controller"];
+    let ending = Program::start(BRUSHWORK, &words).finish(LIMIT);
+    let printed = ending.stdout.join("\n");
+    if code(&ending) != Some(REFUSED) {
+        for words in ["controller's own test", "its period", "Tyreus-Luyben (of this method)"] {
+            assert!(printed.contains(words), "{words}: {ending:?}");
+        }
+    }
+}
+
+#[test]
 fn a_report_whose_name_ends_in_html_is_one_page_with_plots() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("run.html");

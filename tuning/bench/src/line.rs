@@ -65,6 +65,8 @@ pub struct SimulatedLine<M> {
     pub held_back: Option<(Duration, Duration)>,
     /// A line with jitter: the share of replies that are on their way for longer, and by how much at the most, s.
     pub line_jitter: Option<(f64, f64)>,
+    /// Whether the unit passes for a real one.
+    pub passes_for_real: bool,
     /// Time that the host took since it was asked.
     pub stolen: Duration,
 }
@@ -102,6 +104,7 @@ impl<M: Bench> SimulatedLine<M> {
             stalls: Vec::new(),
             held_back: None,
             line_jitter: None,
+            passes_for_real: false,
             stolen: Duration::ZERO,
         }
     }

@@ -2,6 +2,7 @@
 
 mod backlash;
 mod free;
+mod own_test;
 mod probe;
 mod relay;
 mod rest;
@@ -10,6 +11,7 @@ mod window;
 
 pub use backlash::{Backlash, measure_backlash};
 pub use free::{FreeRun, run_free};
+pub use own_test::{OwnTestRun, run_own_test};
 pub use probe::{Probe, run_probe};
 pub use relay::{Figure, RelayRun, run_relay};
 pub(crate) use rest::rest;

@@ -1,6 +1,6 @@
 //! What the axis is commanded, and the registers that are written.
 
-use super::{ExperimentGuard, retried};
+use super::{ExperimentGuard, cause_of, retried};
 use crate::axis::{AxisError, FULL_DUTY_RAW, Want};
 use crate::cause::Cause;
 use crate::gains::Gains;
@@ -76,6 +76,44 @@ impl<L: Law> ExperimentGuard<'_, L> {
         self.drives.push(Drive { t, input: Input::Position(counts.round(), f64::from(speed)) });
         self.monitor.release(first_s, t);
         Ok(())
+    }
+
+    /// Has the controller's own relay test begin about the speed and the duty of now, and gives its hysteresis; `None` where nothing says whether it has
+    /// begun. It is not tried again by itself: it would begin about the duty that it has just given.
+    pub fn start_own_test(
+        &mut self,
+        height: f64,
+        hysteresis: f64,
+        set_speed: f64,
+    ) -> Result<Option<f64>, Cause> {
+        let raw = (height * f64::from(FULL_DUTY_RAW)).round() as u32;
+        self.pause_for(Input::Speed(set_speed));
+        let first_s = self.now_s();
+        let answer = self.axis.start_own_test(raw, hysteresis.round() as u32);
+        self.note_stolen();
+        let (exchange, taken) = match answer {
+            Ok(answer) => answer,
+            Err(AxisError::NoReply | AxisError::Late) => return Ok(None),
+            Err(AxisError::Refused(_)) => return Err(Cause::NoOwnTest),
+            Err(error) => return Err(cause_of(&error)),
+        };
+        self.pace.answered(&exchange);
+        let t = exchange.middle_s() - self.epoch_s;
+        self.drives.push(Drive { t, input: Input::Speed(set_speed) });
+        self.monitor.release(first_s, t);
+        // Between two polls its relay may have given either duty.
+        self.monitor.hold(4.0 * height);
+        Ok(Some(f64::from(taken)))
+    }
+
+    /// What that test found, amplitude in counts/s and period in s; `None` where it has found nothing yet, or did not answer.
+    pub fn own_test(&mut self) -> Result<Option<(f64, f64)>, Cause> {
+        match self.axis.read_own_test() {
+            Ok([0, _] | [_, 0]) | Err(AxisError::NoReply | AxisError::Late) => Ok(None),
+            Ok([amplitude, period_us]) => Ok(Some((f64::from(amplitude), 1e-6 * f64::from(period_us)))),
+            Err(AxisError::Refused(_)) => Err(Cause::NoOwnTest),
+            Err(error) => Err(cause_of(&error)),
+        }
     }
 
     /// Up to four tries. A controller that goes on reporting its counts has not lost the link: it does not take this command.

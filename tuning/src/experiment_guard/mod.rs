@@ -291,6 +291,7 @@ fn cause_of(error: &AxisError) -> Cause {
     match error {
         AxisError::NoReply | AxisError::Late | AxisError::LinkLost(_) => Cause::LinkLost,
         AxisError::Stopped => Cause::Stopped,
+        AxisError::OnlySimulated => Cause::OwnTestOnSimulated,
         AxisError::Refused(_) => Cause::Refused,
     }
 }

@@ -66,7 +66,7 @@ pub struct VelocityArgs {
     /// How the motor is identified, and whose gains are proposed.
     #[arg(long, value_enum, default_value_t = IdentificationArg::Fit)]
     pub method: IdentificationArg,
-    /// Duty about which step or relay works, in percent.
+    /// Duty about which step, relay or the controller's own test works, in percent.
     #[arg(long, value_name = "PERCENT", default_value_t = 50, value_parser = clap::value_parser!(u8).range(10..=90))]
     pub about: u8,
     /// The rest.
@@ -77,7 +77,7 @@ pub struct VelocityArgs {
 /// A run of a position loop.
 #[derive(Debug, Args)]
 pub struct PositionArgs {
-    /// Form of the loop; it is identified by fit (step and relay are for the velocity loop).
+    /// Form of the loop; it is identified by fit (step, relay and controller are for the velocity loop).
     #[arg(long, value_enum, default_value_t = MethodArg::Fit)]
     pub method: MethodArg,
     /// The axis has no end stops: it is driven at up to full duty both ways. Position limits of 0 to 0, within which it could not move, become
@@ -98,6 +98,9 @@ pub enum IdentificationArg {
     Step,
     /// A relay about the speed of a duty (--about), never more; gains by Tyreus-Luyben.
     Relay,
+    /// The controller's own relay test about that speed, beside a fitted model; gains by Tyreus-Luyben. Simulated MCPs and RoboClaws only: how a real one
+    /// does it is not public.
+    Controller,
 }
 
 /// A run on a machine.
@@ -171,6 +174,8 @@ pub enum MethodArg {
     Step,
     /// Not for positions.
     Relay,
+    /// Not for positions.
+    Controller,
 }
 
 /// The kinds of encoders.

@@ -40,6 +40,7 @@ pub fn run(args: &TuneArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
                     IdentificationArg::Fit => Identification::Fit,
                     IdentificationArg::Step => Identification::Step,
                     IdentificationArg::Relay => Identification::Relay,
+                    IdentificationArg::Controller => Identification::Controller,
                 },
                 about_duty: f64::from(args.about) / 100.0,
                 ..Wanted::of(Method::Velocity)
@@ -51,7 +52,7 @@ pub fn run(args: &TuneArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
                 MethodArg::Pd => Method::Pd,
                 MethodArg::Pid => Method::Pid,
                 MethodArg::Piv | MethodArg::Fit => Method::Piv,
-                MethodArg::Step | MethodArg::Relay => {
+                MethodArg::Step | MethodArg::Relay | MethodArg::Controller => {
                     return Exit::Usage.saying(CliTuneMessage::NotForPositions);
                 }
             };

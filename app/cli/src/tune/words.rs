@@ -151,7 +151,7 @@ pub fn print(report: &Report, out: &mut Output) -> Result<(), OutputError> {
     print_rules(report, out)
 }
 
-/// What a step or a relay read off.
+/// What a step, a relay or the controller's own test read off.
 fn experiments(report: &Report, row: &mut dyn FnMut(&str, String, String)) {
     if let Some(step) = &report.step {
         let (low, high) = (100.0 * step.duties.0, 100.0 * step.duties.1);
@@ -176,6 +176,20 @@ fn experiments(report: &Report, row: &mut dyn FnMut(&str, String, String)) {
         let gain = relay.cycle_gain();
         row("gain for the cycle", format!("{:.3e} duty/(counts/s)", gain.0), percent(gain));
         row("gain at 0 Hz", format!("{:.0} counts/s", relay.static_gain.0), percent(relay.static_gain));
+    }
+    if let Some(test) = &report.own_test {
+        let (low, high) = (100.0 * test.duties.0, 100.0 * test.duties.1);
+        row(
+            "controller's own test",
+            format!("{low:.0} and {high:.0} % duty"),
+            format!("about {:.0} counts/s", test.set_speed),
+        );
+        row(
+            "its oscillation",
+            format!("{:.0} counts/s", test.amplitude),
+            format!("hysteresis {:.0} counts/s", test.hysteresis),
+        );
+        row("its period", format!("{:.1} ms", 1e3 * test.period_s), String::new());
     }
 }
 

@@ -65,6 +65,7 @@ pub fn page(report: &Report) -> String {
         Identification::Fit => "a fitted model",
         Identification::Step => "a step",
         Identification::Relay => "a relay",
+        Identification::Controller => "the controller's own relay test",
     };
     // Writing into a string cannot fail, here and below.
     let _ = writeln!(
@@ -124,6 +125,14 @@ fn motor(page: &mut String, report: &Report) {
             format!("{:.0} counts/s", relay.static_gain.0),
             percent(relay.static_gain),
         );
+    }
+    if let Some(test) = &report.own_test {
+        row(
+            "Oscillation of the controller's own test",
+            format!("{:.0} counts/s", test.amplitude),
+            format!("hysteresis {:.0} counts/s", test.hysteresis),
+        );
+        row("Its period", format!("{:.1} ms", 1e3 * test.period_s), String::new());
     }
     if let Some(winding) = &report.winding {
         row(

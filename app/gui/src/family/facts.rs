@@ -343,6 +343,8 @@ pub enum Ability {
     LogicBattery,
     /// Encoders of more than one kind.
     AbsoluteEncoders,
+    /// A relay test of the controller's own.
+    OwnTest,
 }
 
 /// Two readouts below each other in the top row.

@@ -50,6 +50,8 @@ fn steps(cause: Cause) -> &'static [&'static str] {
         | Cause::NoRoomForStep
         | Cause::StepUnclear
         | Cause::NoLimitCycle
+        | Cause::NoOwnTest
+        | Cause::OwnTestOnSimulated
         | Cause::RuleUnstable
         | Cause::RuleLowered => &OTHER_METHOD,
         Cause::LineTooSlow { .. } => &[

@@ -124,6 +124,7 @@ fn options_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
     let methods = family.methods(which);
     let has_encoders = family.lacks(Ability::AbsoluteEncoders).is_none();
     let has_duty = family.lacks(Ability::Duty).is_none();
+    let is_simulated = model.front.link.identity().is_some_and(|identity| identity.simulated);
     let setting = &mut model.front.tune.panel_mut(which, motor).setting;
     let travel_width = if setting.turns_freely { 0.0 } else { TRAVEL_WIDTH };
     let encoder_width = if has_encoders { 0.0 } else { ENCODER_WIDTH };
@@ -146,14 +147,20 @@ fn options_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
         ui.horizontal(|ui| limits_ui(ui, setting, has_duty, has_encoders));
     }
     if which == Loop::Velocity {
-        ui.horizontal(|ui| identification_ui(ui, setting));
+        let no_own_test =
+            family.lacks(Ability::OwnTest).or_else(|| (!is_simulated).then_some(NOT_ON_REAL_ONES));
+        ui.horizontal(|ui| identification_ui(ui, setting, no_own_test));
     }
     let is_said = lacked_travel && !setting.lacks_travel();
     model.front.tune.wants_start |= is_said && focus::shows_ring(ui.ctx());
 }
 
-/// How the motor of a velocity loop is identified.
-fn identification_ui(ui: &mut Ui, setting: &mut Setting) {
+/// Why a controller is not asked to test its loop itself.
+const NOT_ON_REAL_ONES: &str = "Simulated controllers only: no manual says how a controller's own test drives the motor and how it ends, and with wrong wiring it can lock \
+                                the controller up (MCP manual 2.4.5).";
+
+/// How the motor of a velocity loop is identified; `no_own_test` says why the controller's own test is not to be had, if so.
+fn identification_ui(ui: &mut Ui, setting: &mut Setting, no_own_test: Option<&str>) {
     ui.label("Identify");
     for (identification, name, hint) in [
         (
@@ -171,6 +178,14 @@ fn identification_ui(ui: &mut Ui, setting: &mut Setting) {
     ] {
         ui.radio_value(&mut setting.identification, identification, name).on_hover_text(hint);
     }
+    ui.add_enabled_ui(no_own_test.is_none(), |ui| {
+        ui.radio_value(&mut setting.identification, Identification::Controller, "By controller")
+            .on_hover_text(
+                "The controller's own relay test (commands 84 to 89) about the speed of a duty, beside a fitted model; gains by the rule of Tyreus and Luyben. How a real \
+                 one does it is not public: the simulated one does what a textbook's relay does",
+            )
+            .on_disabled_hover_text(no_own_test.unwrap_or_default());
+    });
     if setting.identification != Identification::Fit {
         ui.label("about");
         let duty = Numeric {
@@ -182,7 +197,7 @@ fn identification_ui(ui: &mut Ui, setting: &mut Setting) {
             width: 62.0,
         };
         duty.ui(ui, &mut setting.about_percent)
-            .on_hover_text("The duty that the step or the relay lies about");
+            .on_hover_text("The duty that the step, the relay or the controller's own test lies about");
     }
 }
 

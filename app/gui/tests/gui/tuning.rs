@@ -213,10 +213,12 @@ fn a_position_loop_is_tuned_by_each_method_and_applied_whole() {
 }
 
 #[test]
-fn step_and_relay_are_picked_and_the_rules_on_their_model_are_considered_beside_their_own() {
-    for (label, identification, other) in
-        [("By step", Identification::Step, "Tyreus-Luyben"), ("By relay", Identification::Relay, "SIMC")]
-    {
+fn the_other_methods_are_picked_and_the_rules_on_their_model_are_considered_beside_their_own() {
+    for (label, identification, other) in [
+        ("By step", Identification::Step, "Tyreus-Luyben"),
+        ("By relay", Identification::Relay, "SIMC"),
+        ("By controller", Identification::Controller, "SIMC"),
+    ] {
         let mut bench = opened("small-gearmotor", "Velocity Settings");
         bench.press(label);
         bench.enter("About duty", "45");

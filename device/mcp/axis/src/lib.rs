@@ -47,6 +47,8 @@ pub trait Carrier {
     fn generation(&self) -> Generation;
     /// The stream that this link is on, as far as it is known: its index in command 145.
     fn stream(&self) -> Option<usize>;
+    /// Whether the unit is a simulated one, so that it may be sent what nobody knows the meaning of.
+    fn is_simulated(&self) -> bool;
     /// How long, since this was last asked, waits and replies had to wait for a processor of this computer.
     fn stolen(&mut self) -> Duration {
         Duration::ZERO
@@ -257,6 +259,29 @@ impl<C: Carrier> Axis for PacketAxis<C> {
         let values =
             [give(INDEX, index), give(TYPE, kind), give(RATE, rate), give(TIMEOUT, i64::from(milliseconds))];
         self.carrier.transact(commands::SET_STREAM, &values).map(|_| ())
+    }
+
+    /// Commands 84 and 85. Which unit the period has, how the test ends and what it does where the wiring is wrong is not public: real controllers are not sent it.
+    fn start_own_test(&mut self, height_raw: u32, hysteresis: u32) -> Result<(Exchange, u32), AxisError> {
+        if !self.carrier.is_simulated() {
+            return Err(AxisError::OnlySimulated);
+        }
+        let command = [commands::AUTOTUNE_VELOCITY_M1, commands::AUTOTUNE_VELOCITY_M2];
+        let has_hysteresis = self.carrier.generation() >= Generation::Gen3;
+        let taken = if has_hysteresis { hysteresis } else { 0 };
+        let values = [give(AMPLITUDE, i64::from(height_raw)), give(HYSTERESIS, i64::from(taken))];
+        let given = if has_hysteresis { &values[..] } else { &values[..1] };
+        self.send(command, given).map(|at| (at, taken))
+    }
+
+    /// Commands 88 and 89; that the period is in µs is assumed, as the simulator does.
+    fn read_own_test(&mut self) -> Result<[u32; 2], AxisError> {
+        if !self.carrier.is_simulated() {
+            return Err(AxisError::OnlySimulated);
+        }
+        let commands = [commands::READ_AUTOTUNE_M1, commands::READ_AUTOTUNE_M2];
+        let values = self.optional_of(commands)?.ok_or_else(|| AxisError::Refused("command 88".into()))?;
+        Ok([values.int(AMPLITUDE) as u32, values.int(PERIOD) as u32])
     }
 
     fn stolen(&mut self) -> Duration {

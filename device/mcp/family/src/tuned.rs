@@ -83,6 +83,10 @@ impl Carrier for JobCarrier<'_, '_> {
         self.stream.and_then(|stream| Stream::ALL.iter().position(|other| *other == stream))
     }
 
+    fn is_simulated(&self) -> bool {
+        self.context.is_simulated()
+    }
+
     fn stolen(&mut self) -> Duration {
         self.context.take_stolen()
     }

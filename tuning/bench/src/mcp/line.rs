@@ -82,6 +82,10 @@ impl Carrier for SimulatedLine<Controller> {
         self.wait(time)
     }
 
+    fn is_simulated(&self) -> bool {
+        !self.passes_for_real
+    }
+
     fn stolen(&mut self) -> Duration {
         self.take_stolen()
     }

@@ -14,6 +14,7 @@ mod mind_table;
 mod mind_trial;
 mod noisy_current;
 mod other_make;
+mod own_test;
 mod small_faults;
 mod small_table;
 mod trajectory;

@@ -251,6 +251,7 @@ impl Family for MotionMind {
             }
             Ability::AbsoluteEncoders => "A Motion Mind 3 is tuned with its quadrature encoder.",
             Ability::ByHand => "Use the step assistant of the Position screen.",
+            Ability::OwnTest => "A Motion Mind 3 has no relay test of its own.",
             Ability::Duty => return None,
         })
     }

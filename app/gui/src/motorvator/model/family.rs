@@ -144,6 +144,7 @@ impl Family for Motorvator {
             Ability::LogicBattery => "A MotorVator does not tell its supply.",
             Ability::AbsoluteEncoders => "A MotorVator has no encoders.",
             Ability::ByHand => "A MotorVator has no loops whose gains could be calibrated.",
+            Ability::OwnTest => "A MotorVator has no relay test.",
             Ability::Duty => return None,
         })
     }

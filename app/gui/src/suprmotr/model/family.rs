@@ -227,6 +227,7 @@ impl Family for SuprMotr {
             Ability::LogicBattery => "A SuprMotr makes the supply of its logic out of that of the motor.",
             Ability::AbsoluteEncoders => "A SuprMotr has a quadrature encoder.",
             Ability::ByHand => "A SuprMotr takes no duty, by which gains could be calibrated by hand.",
+            Ability::OwnTest => "A SuprMotr has no relay test.",
             Ability::Duty => "A SuprMotr takes no duty.",
         })
     }
