@@ -2,8 +2,11 @@
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
-    // Rust links with its own LLD for this target alone (release notes of Rust 1.90); others have linkers without the option.
-    if std::env::var("TARGET").is_ok_and(|target| target == "x86_64-unknown-linux-gnu") {
+    println!("cargo:rerun-if-env-changed=RUSTC_LINKER");
+    // Rust links with its own LLD for this target alone (release notes of Rust 1.90); others have linkers without the option, and so may one that was chosen, as Zig's, by
+    // which packages are made for an old C library.
+    let is_usual = std::env::var_os("RUSTC_LINKER").is_none();
+    if is_usual && std::env::var("TARGET").is_ok_and(|target| target == "x86_64-unknown-linux-gnu") {
         println!("cargo:rustc-link-arg-bins=-Wl,--icf=all");
     }
 }
