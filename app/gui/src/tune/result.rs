@@ -42,11 +42,11 @@ pub fn result_ui(ui: &mut Ui, model: &mut Model, which: Loop, commands: &mut Com
         ui.spacing_mut().interact_size.y = 20.0;
         figures_ui(ui, model, which);
         super::pace::pace_ui(ui, model, which);
+        gains_ui(ui, model, which, held);
+        rules_ui(ui, model, which);
         if let Some(run) = model.front.tune.front(which).run() {
             super::stood::stood_ui(ui, run, which);
         }
-        gains_ui(ui, model, which, held);
-        rules_ui(ui, model, which);
         model_ui(ui, model, which);
     }
     super::runs::runs_ui(ui, model, which);

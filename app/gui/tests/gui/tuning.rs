@@ -214,12 +214,13 @@ fn a_position_loop_is_tuned_by_each_method_and_applied_whole() {
 
 #[test]
 fn the_other_methods_are_picked_and_the_rules_on_their_model_are_considered_beside_their_own() {
-    for (label, identification, other) in [
-        ("By step", Identification::Step, "Tyreus-Luyben"),
-        ("By relay", Identification::Relay, "SIMC"),
-        ("By controller", Identification::Controller, "SIMC"),
+    // The controller's own test wants an encoder that is finer than its hysteresis.
+    for (preset, label, identification, other) in [
+        ("small-gearmotor", "By step", Identification::Step, "Tyreus-Luyben"),
+        ("small-gearmotor", "By relay", Identification::Relay, "SIMC"),
+        ("large-gearmotor", "By controller", Identification::Controller, "SIMC"),
     ] {
-        let mut bench = opened("small-gearmotor", "Velocity Settings");
+        let mut bench = opened(preset, "Velocity Settings");
         bench.press(label);
         bench.enter("About duty", "45");
         bench.press("Tune M1");
@@ -566,14 +567,14 @@ fn what_load_the_loop_stands_is_told_and_follows_the_gains_that_are_considered()
     let lowest = |bench: &mut Bench| {
         let run = run(bench, Loop::Velocity);
         let shown = run.shown.expect("it has gains");
-        shown.stood(&run.report).and_then(|stood| stood.stable.low).expect("a light load makes it unstable")
+        shown.stood(&run.report).and_then(|stood| stood.calm?.low).unwrap_or(0.0)
     };
     let before = lowest(&mut bench);
     bench.focus_label("M1 level");
-    for _ in 0..25 {
-        bench.key(Key::ArrowRight);
+    for _ in 0..40 {
+        bench.key(Key::ArrowLeft);
     }
-    assert!(lowest(&mut bench) > before, "stiffer gains stand less");
+    assert!(lowest(&mut bench) < before, "softer gains stand a lighter load");
 }
 
 #[test]
