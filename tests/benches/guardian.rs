@@ -3,9 +3,10 @@
 //!
 //! `cargo bench -p brushwork-tests --bench guardian -- [--kills 100] [--displays 20] [--load quiet|busy] [--program drive|tune|window]
 //! [--minutes 30]`. The table in SAFETY.md is what it prints. With `--minutes` it is a soak: one attack of each kind after the other, until the
-//! time is over. Of the worst it says when the motor was last seen driven, too: far from the first look at which it was off, this
+//! time is over. Each attack is told on the standard error as it comes. Of the worst it says when the motor was last seen driven, too: far from the first look at which it was off, this
 //! computer was late, not the stop. It ends with 1 where a motor was off later than promised, or a row could not be tried.
 #![expect(clippy::print_stdout, reason = "the table is what the benchmark is for")]
+#![expect(clippy::print_stderr, reason = "each attack is told as it comes")]
 
 fn main() -> std::process::ExitCode {
     #[cfg(target_os = "linux")]
@@ -139,7 +140,9 @@ mod killing {
                 let mut tried = false;
                 for row in &mut rows {
                     if is_due(row) {
-                        row.took.push(row.unit.attacked(row.attack, turn));
+                        let took = row.unit.attacked(row.attack, turn);
+                        row.say(load, turn, took);
+                        row.took.push(took);
                         tried = true;
                     }
                 }
@@ -207,6 +210,16 @@ mod killing {
     }
 
     impl Row {
+        /// Says what one attack took: a run of hours that is ended early has told what it saw.
+        fn say(&self, load: &str, turn: u32, took: Option<Off>) {
+            let took = took.map_or_else(
+                || "never off".to_owned(),
+                |took| format!("{:.0} ms", took.off_after.as_secs_f64() * 1e3),
+            );
+            let (title, program, unit) = (self.attack.title(), self.attack.program(), self.unit.name());
+            eprintln!("{load}, {title}, {program}, {unit}, {}: {took}", turn + 1);
+        }
+
         /// Prints it. Whether all of it is within the goal.
         fn print(self, load: &str, goal_ms: u64) -> bool {
             let never = Off { off_after: NEVER, driven_for: NEVER };
