@@ -1,6 +1,7 @@
 //! A controller as a command sees it: connected and identified, or a sentence and an exit code.
 
 use crate::messages::{CliLinkMessage, CliUnitsMessage};
+use brushwork_link::work::receive_within;
 use std::fmt::Display;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -392,7 +393,7 @@ fn look_within(
     if interrupt.is_raised() {
         return Err(Exit::Interrupted);
     }
-    match device.events().recv_timeout(slice) {
+    match receive_within(device.events(), slice) {
         Ok(Event::Lost(failure)) => Ok(Err(failure)),
         Ok(Event::Stopped(report)) if report.from_outside => {
             say(CoreStatusMessage::Stopped { reason: DisarmReason::StopFromOutside });

@@ -3,6 +3,7 @@
 //! Reading input, and opening what a path names, can wait for ever and cannot be called off. A command that holds no line to a controller then has
 //! nothing to put in order, and is ended a moment after the signal; one that holds a line waits on another thread ([`meanwhile`]).
 
+use brushwork_link::work::receive_within;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
@@ -136,7 +137,7 @@ pub fn meanwhile<T: Send + 'static>(
         return Err(Exit::Failed.saying(CliLinkMessage::NoThread { error: error.to_string() }));
     }
     loop {
-        match receiver.recv_timeout(LOOK) {
+        match receive_within(&receiver, LOOK) {
             Ok(done) => return Ok(Some(done)),
             Err(RecvTimeoutError::Disconnected) => return Ok(None),
             Err(RecvTimeoutError::Timeout) => breathe()?,

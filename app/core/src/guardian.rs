@@ -5,6 +5,7 @@
 //! opened a second time; where the system opens a port to one process at a time, as Windows does, it opens the port when the first process is
 //! gone. A first process that lives and stands still while motors may move is ended before anything is written, so that two never speak at once.
 
+use brushwork_link::work::receive_within;
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
@@ -272,7 +273,7 @@ pub fn stand_guard<L: Write>(
     loop {
         let waits_from = Instant::now();
         let order = match held.is_some() && is_moving {
-            true => inbox.recv_timeout(LOOK_INTERVAL),
+            true => receive_within(&inbox, LOOK_INTERVAL),
             false => inbox.recv().map_err(|_| RecvTimeoutError::Disconnected),
         };
         if order.is_ok() {

@@ -3,6 +3,7 @@
 //! That all pages were confirmed says that the line was good, and nothing else. An update is called done when the controller has
 //! been connected again and says so itself.
 
+use brushwork_link::work::receive_within;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -205,7 +206,7 @@ pub fn wait_for_return(
 fn look(session: &Session, goes_on: &dyn Fn() -> bool) -> Result<(), Message> {
     let begun_at = Instant::now();
     while goes_on() && begun_at.elapsed() < RETURN_LIMIT {
-        match session.device.events().recv_timeout(SLICE) {
+        match receive_within(session.device.events(), SLICE) {
             Ok(Event::Selected { .. }) => return Ok(()),
             Ok(Event::Lost(failure)) => return Err(failure.message()),
             Ok(_) | Err(RecvTimeoutError::Timeout) => {}

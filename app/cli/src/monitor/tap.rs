@@ -5,6 +5,7 @@
 //! once a millisecond. When the tap ends while the client has motors running, it stops them: nobody else can any more.
 
 use crate::messages::CliMonitorMessage;
+use brushwork_link::work::receive_within;
 use std::net::SocketAddr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -106,7 +107,7 @@ fn show(
         if interrupt.is_raised() {
             return Err(Exit::Interrupted);
         }
-        match received.recv_timeout(WATCH) {
+        match receive_within(received, WATCH) {
             Ok(News::Record(record)) => print(args.json, &record, out)?,
             Ok(News::LeftOut(count)) => say(CliMonitorMessage::LeftOut { count }),
             Ok(News::ClientLeft) => say(CliMonitorMessage::ClientLeft),

@@ -3,6 +3,7 @@
 //! Shared by the window and the command line. Looking writes to no node but the read of a device type; starting writes the one NMT
 //! command that a person asked for.
 
+use brushwork_link::work::receive_within;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -89,7 +90,7 @@ pub fn look(target: &ConnectTarget, goes_on: &dyn Fn() -> bool) -> Result<BusLis
     let monitor = session.bus.as_ref().ok_or_else(|| no_adapter(target))?;
     let begun_at = Instant::now();
     while goes_on() && begun_at.elapsed() < SEARCH_LIMIT {
-        match session.device.events().recv_timeout(SLICE) {
+        match receive_within(session.device.events(), SLICE) {
             Ok(Event::Selected { .. }) => return Ok(BusList::of(monitor)),
             Ok(Event::Lost(failure)) => {
                 return Ok(BusList { failure: Some(failure.to_string()), ..BusList::of(monitor) });

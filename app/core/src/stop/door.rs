@@ -3,6 +3,7 @@
 //! Anybody here can knock. Who does not know the secret of a line within a second and a few hundred bytes is sent away without a word, and no
 //! more than a few are heard at a time.
 
+use brushwork_link::work::receive_within;
 use std::io::{self, Read as _, Write as _};
 use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -138,7 +139,7 @@ impl Door {
             guest.write_all(&line)
         };
         tell(Word::Heard)?;
-        tell(match served.recv_timeout(STOP_LIMIT) {
+        tell(match receive_within(&served, STOP_LIMIT) {
             Ok((units, report)) => Word::Stopped(LineStop::of(&units, &report)),
             Err(RecvTimeoutError::Timeout) => Word::NotServed,
             Err(RecvTimeoutError::Disconnected) => Word::Ended,

@@ -1,6 +1,7 @@
 //! Bytes through a pair of bounded channels, to a simulated controller in the same program.
 
 use super::byte_stream::{Transport, TransportError, WRITE_TIMEOUT};
+use crate::work::receive_within;
 use crossbeam_channel::{Receiver, RecvTimeoutError, SendTimeoutError, Sender, bounded};
 use std::time::Duration;
 
@@ -53,7 +54,7 @@ impl Transport for ChannelTransport {
 
     fn read(&mut self, buffer: &mut [u8], timeout: Duration) -> Result<usize, TransportError> {
         if self.unread.is_empty() {
-            match self.from_controller.recv_timeout(timeout) {
+            match receive_within(&self.from_controller, timeout) {
                 Ok(bytes) => self.unread = bytes,
                 Err(RecvTimeoutError::Timeout) => return Ok(0),
                 Err(RecvTimeoutError::Disconnected) => return Err(Self::gone()),

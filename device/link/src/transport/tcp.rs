@@ -4,6 +4,7 @@
 //! a socket time-out (which some systems round up to several milliseconds).
 
 use super::byte_stream::{SecondWay, Transport, TransportError, WRITE_TIMEOUT};
+use crate::work::receive_within;
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 use std::io::{self, Read, Write};
 use std::net::{Shutdown, TcpStream, ToSocketAddrs};
@@ -86,7 +87,7 @@ impl Transport for TcpTransport {
 
     fn read(&mut self, buffer: &mut [u8], timeout: Duration) -> Result<usize, TransportError> {
         if self.unread.is_empty() {
-            match self.chunks.recv_timeout(timeout) {
+            match receive_within(&self.chunks, timeout) {
                 Ok(chunk) => self.take(chunk)?,
                 Err(RecvTimeoutError::Timeout) => return Ok(0),
                 Err(RecvTimeoutError::Disconnected) => return Err(self.last_word()),

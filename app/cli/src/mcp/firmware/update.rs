@@ -3,6 +3,7 @@
 use crate::messages::{CliFirmwareMessage, CliScriptMessage};
 use brushwork_core::addresses;
 use brushwork_core::messages::CoreStatusMessage;
+use brushwork_link::work::receive_within;
 use std::io::{self, IsTerminal as _, Write as _};
 use std::path::Path;
 use std::sync::Arc;
@@ -194,7 +195,7 @@ fn send(place: LoaderPlace, image: Image, interrupt: &Interrupt) -> Result<Sent,
                 say(CliFirmwareMessage::GoesOn);
             }
         }
-        match upload.events().recv_timeout(SLICE) {
+        match receive_within(upload.events(), SLICE) {
             Ok(UploadEvent::Progress(progress)) => {
                 erasing |= !progress.is_harmless();
                 tell(progress, &mut shown);

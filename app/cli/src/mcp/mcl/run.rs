@@ -1,6 +1,7 @@
 //! `brushwork mcl run`: a script on a simulated controller in virtual time, its stream on standard output.
 
 use crate::messages::CliScriptMessage;
+use brushwork_link::work::receive_within;
 use std::io::{IsTerminal as _, Read as _};
 use std::path::Path;
 use std::time::Duration;
@@ -155,7 +156,7 @@ impl Input {
 
     fn wait(&mut self, time: Duration) {
         let Some(chunks) = &self.chunks else { return };
-        match chunks.recv_timeout(time) {
+        match receive_within(chunks, time) {
             Ok(mut bytes) => self.waiting.append(&mut bytes),
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => self.chunks = None,

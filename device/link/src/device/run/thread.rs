@@ -10,6 +10,7 @@ use crate::device::options::DeviceOptions;
 use crate::failure::Failure;
 use crate::messages::{ActMessage, CauseMessage, RemedyMessage};
 use crate::transport::Transport;
+use crate::work::receive_within;
 use crossbeam_channel::{Receiver, bounded};
 use std::io;
 use std::panic::{self, AssertUnwindSafe};
@@ -61,7 +62,7 @@ fn turn(mut device_loop: DeviceLoop, clock: &dyn Clock, woken: &Receiver<()>) {
                 Step::IdleUntil(until) => {
                     let left = until.saturating_sub(clock.now());
                     clock.rest_until(until);
-                    let _ = woken.recv_timeout(left);
+                    let _ = receive_within(woken, left);
                 }
                 Step::Ended => return,
             }
