@@ -53,7 +53,7 @@ impl Ending {
     /// with, for longer than a line that was quick until then is waited for.
     #[must_use]
     pub fn found_silence(&self) -> bool {
-        let said = ["no answer within", "does not answer any more"];
+        let said = ["no answer within", "no answer came in time"];
         self.stderr.iter().any(|line| said.iter().any(|said| line.contains(said)))
     }
 }

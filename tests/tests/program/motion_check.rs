@@ -180,7 +180,12 @@ fn a_unit_whose_power_stays_away_is_silent_and_its_power_is_named() {
         assert_eq!(driven.findings, [], "{name}: silence is told once");
     }
     let sentence = DisarmReason::NoAnswer.to_string();
-    assert!(sentence.contains("does not answer any more") && sentence.contains("power"), "{sentence}");
+    assert!(
+        sentence.contains("no answer came in time")
+            && sentence.contains("power")
+            && sentence.contains("busy"),
+        "{sentence}"
+    );
 }
 
 #[test]

@@ -254,7 +254,7 @@ impl fmt::Display for DisarmReason {
             }
             Self::Restarted => f.write_str("Disarmed: the controller has restarted"),
             Self::NoAnswer => f.write_str(
-                "Disarmed: the controller does not answer any more: check its power, its cable and the line",
+                "Disarmed: no answer came in time: check the controller's power, its cable and the line, and whether this computer is too busy",
             ),
             Self::NotTogether => {
                 f.write_str("Disarmed: one of the controllers that move together did not take the command")
