@@ -2,7 +2,7 @@
 //! time-out of their own, or one of a minute.
 //!
 //! `cargo bench -p brushwork-tests --bench guardian -- [--kills 100] [--displays 20] [--load quiet|busy] [--program drive|tune|window]
-//! [--minutes 30]`. The table in SAFETY.md is what it prints. With `--minutes` it is a soak: one attack of each kind after the other, until the
+//! [--minutes 30]`. Busy is 8 processes that take all they can get from when a program drives, or a window is open, on. The table in SAFETY.md is what it prints. With `--minutes` it is a soak: one attack of each kind after the other, until the
 //! time is over. Each attack is told on the standard error as it comes. Of the worst it says when the motor was last seen driven, too: far from the first look at which it was off, this
 //! computer was late, not the stop. It ends with 1 where a motor was off later than promised, or a row could not be tried.
 #![expect(clippy::print_stdout, reason = "the table is what the benchmark is for")]
@@ -123,7 +123,7 @@ mod killing {
             if wanted.load.as_ref().is_some_and(|only| only != load) {
                 continue;
             }
-            let busy: Vec<Child> = (0..if load == "busy" { BUSY } else { 0 }).map(|_| keep_busy()).collect();
+            let busy = Busy::of(if load == "busy" { BUSY } else { 0 });
             let attacks = Attack::ALL.into_iter().filter(|attack| {
                 wanted.program.as_ref().is_none_or(|only| only == attack.program())
                     && (has_xvfb || !attack.wants_display())
@@ -140,7 +140,7 @@ mod killing {
                 let mut tried = false;
                 for row in &mut rows {
                     if is_due(row) {
-                        let took = row.unit.attacked(row.attack, turn);
+                        let took = row.unit.attacked(row.attack, turn, &busy);
                         row.say(load, turn, took);
                         row.took.push(took);
                         tried = true;
@@ -158,10 +158,33 @@ mod killing {
         ExitCode::from(u8::from(!is_kept))
     }
 
-    fn keep_busy() -> Child {
-        let mut command = Command::new("sh");
-        command.args(["-c", "while :; do :; done"]);
-        Child::spawn(&command, [Stdio::null(), Stdio::null(), Stdio::null()])
+    /// Programs that keep the machine busy.
+    struct Busy(Vec<Child>);
+
+    impl Busy {
+        fn of(count: usize) -> Self {
+            let mut command = Command::new("sh");
+            command.args(["-c", "while :; do :; done"]);
+            Self((0..count).map(|_| Child::spawn(&command, [(); 3].map(|()| Stdio::null()))).collect())
+        }
+
+        /// On a pseudo-terminal; for a window on a busy machine by TCP: the kernel hands on what goes through a terminal by a thread of its own,
+        /// there up to half a second late, and a window that hears nothing for a quarter second stops by itself before it is attacked.
+        fn serve<M: Machine + 'static>(&self, attack: Attack, machine: M, options: &str) -> Served<M> {
+            if attack.wants_display() && !self.0.is_empty() {
+                Served::on_tcp(machine, options)
+            } else {
+                Served::on_pty(machine, options)
+            }
+        }
+
+        /// Does what is no part of an attack while they stand still: a window that opens beside them takes half a minute.
+        fn halted<T>(&self, work: impl FnOnce() -> T) -> T {
+            self.0.iter().for_each(|program| program.signal("STOP"));
+            let done = work();
+            self.0.iter().for_each(|program| program.signal("CONT"));
+            done
+        }
     }
 
     /// Whose motor is driven.
@@ -182,12 +205,14 @@ mod killing {
         }
 
         /// One attack on a new one. Nothing where its motor was not stopped.
-        fn attacked(self, attack: Attack, turn: u32) -> Option<Off> {
+        fn attacked(self, attack: Attack, turn: u32, busy: &Busy) -> Option<Off> {
             match (self, attack) {
-                (Self::Mcp, _) => once(&Served::on_pty(mcp(), ",stream=usb"), attack, turn),
-                (Self::MotionMind, Attack::Tune) => once(&Served::on_pty(tunable(), OF_MIND), attack, turn),
+                (Self::Mcp, _) => once(&busy.serve(attack, mcp(), ",stream=usb"), attack, turn, busy),
+                (Self::MotionMind, Attack::Tune) => {
+                    once(&busy.serve(attack, tunable(), OF_MIND), attack, turn, busy)
+                }
                 (Self::MotionMind, Attack::Drive | Attack::Window | Attack::Display) => {
-                    once(&Served::on_pty(motion_mind(), OF_MIND), attack, turn)
+                    once(&busy.serve(attack, motion_mind(), OF_MIND), attack, turn, busy)
                 }
             }
         }
@@ -246,7 +271,7 @@ mod killing {
     }
 
     /// One attack, at a moment that depends on its turn.
-    fn once<M: Machine + 'static>(served: &Served<M>, attack: Attack, turn: u32) -> Option<Off> {
+    fn once<M: Machine + 'static>(served: &Served<M>, attack: Attack, turn: u32, busy: &Busy) -> Option<Off> {
         let (step, moments) = MOMENTS;
         let moment = step * (turn % moments);
         let target = served.target.as_str();
@@ -256,7 +281,7 @@ mod killing {
             Attack::Drive => killed(served, moment, || Program::start(BRUSHWORK, &drive)),
             Attack::Tune => killed(served, moment, || Program::start(BRUSHWORK, &tune)),
             Attack::Window | Attack::Display => {
-                let mut window = OpenWindow::on(BRUSHWORK, served);
+                let mut window = busy.halted(|| OpenWindow::on(BRUSHWORK, served));
                 let drives = (0..TRIES).any(|_| {
                     window.drive(served);
                     thread::sleep(moment);

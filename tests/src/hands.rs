@@ -100,13 +100,24 @@ impl OpenWindow {
     /// # Panics
     /// When it cannot be driven.
     pub fn drive<M: Machine + 'static>(&self, served: &Served<M>) {
-        let armed = || {
+        let is_armed = || !guardians_of(self.program.id()).is_empty();
+        let becomes = |armed: bool| {
             let until = Instant::now() + ARMING;
-            while guardians_of(self.program.id()).is_empty() && Instant::now() < until {
+            while is_armed() != armed && Instant::now() < until {
                 thread::sleep(STROKE);
             }
+            is_armed() == armed
         };
-        let drive = || self.hands.drive(armed, || served.look().0);
+        // Nothing is armed while a stop still waits for its confirmation.
+        let drive = || {
+            self.hands.press(&[Key::Escape]);
+            becomes(false)
+                && {
+                    self.hands.arm();
+                    becomes(true)
+                }
+                && self.hands.slide(|| served.look().0)
+        };
         wait::until("a slider that moves its motor", drive, || "it stands".to_owned());
     }
 }
@@ -167,13 +178,15 @@ impl Hands {
         self.flush();
     }
 
-    /// Arms the screen that is shown, and presses Page Up on one widget after the other until something is driven: on anything but a
-    /// slider it changes nothing that moves. Says whether it was. `armed` waits until the screen is. A window goes on by one widget a
-    /// frame, so that a slow one makes fewer steps than there are strokes.
-    pub fn drive(&self, armed: impl FnOnce(), is_driven: impl Fn() -> bool) -> bool {
-        self.press(&[Key::Escape]);
+    /// Arms the screen that is shown.
+    pub fn arm(&self) {
         self.press(&[Key::Control, Key::Shift, Key::Char('a')]);
-        armed();
+    }
+
+    /// Presses Page Up on one widget of an armed screen after the other until something is driven: on anything but a slider it changes
+    /// nothing that moves. Says whether it was. A window goes on by one widget a frame, so that a slow one makes fewer steps than there
+    /// are strokes.
+    pub fn slide(&self, is_driven: impl Fn() -> bool) -> bool {
         (0..WIDGETS).any(|_| {
             self.press(&[Key::Tab]);
             self.press(&[Key::PageUp]);
