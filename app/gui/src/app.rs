@@ -183,8 +183,12 @@ impl App {
 
     /// Takes in what happened since the last frame.
     fn update(&mut self, ctx: &Context) {
+        self.model.devices.can_choose = self.parts.ports.can_choose();
         if let Some(listed) = self.parts.ports.newest() {
             self.model.devices.set_ports(listed);
+        }
+        if let Some(why) = self.parts.ports.take_refusal() {
+            self.model.messages.warn(why);
         }
         self.take_started(ctx);
         for connection in self.links.ids() {
@@ -374,6 +378,7 @@ impl App {
             Command::ToAll(action) => self.act_for_all(action),
             Command::OpenRaw => self.open_raw(),
             Command::WriteRaw(action) => self.raw(action),
+            Command::ChoosePort => self.choose_port(),
             Command::OpenFirmware => {
                 if let Err(why) = self.open_firmware(None) {
                     self.model.messages.fail(why);

@@ -29,6 +29,8 @@ use crate::model::{Column, HelpPage, Screen, Section, SettingsAction, Sheet, Tab
 pub enum Command {
     /// Opens a link to what is chosen in the device list.
     Connect,
+    /// Lets a port be chosen that a browser then lets its page reach.
+    ChoosePort,
     /// Opens a link to what a person would have typed, or brings it to the front if it is open.
     ConnectTo(String),
     /// Closes a link, or gives up opening it.

@@ -18,6 +18,8 @@ messages! {
         KeepUnsaved "keep unsaved text against a crash",
         Print { title: String } "print {title}",
         WatchPorts "watch the serial ports",
+        ReachPort "reach a serial port",
+        ChoosePort "choose a serial port",
         ChangeWorld "change the simulated world",
         RunProgram "run the program on the simulated board",
         DebugScript "debug the script of the simulated controller",
@@ -34,7 +36,7 @@ messages! {
     /// What came back of what was tried, as a clause.
     pub enum WindowCauseMessage {
         NoFile "it is no file, but a folder, a device or a pipe",
-        PageHasNoPorts "a page in a browser has simulated controllers alone",
+        BrowserHasNoPorts "this browser gives a page none, or cannot wait for a reply in the middle of a call; simulated controllers need neither",
         DiskIsBusy "the disk is busy",
         NoThread "the system gave no thread for it",
         OtherUnit "another unit was chosen meanwhile",
@@ -47,7 +49,8 @@ messages! {
     /// What to do, as a sentence without its full stop.
     pub enum WindowRemedyMessage {
         TypeTarget "Type a path such as /dev/ttyUSB0 or COM3, or tcp:host:port",
-        InstallProgram "Install Brushwork on this computer for a controller of your own",
+        UseChromium "For a controller of your own open the page in Chrome, Edge or another Chromium of version 137 or newer on a computer, or install Brushwork",
+        ChooseAgain "Press the button again; if the browser still refuses, look at what its settings allow this page",
         CheckPath "Check the path and your rights",
         ChooseAnother "Choose another file",
         SaveElsewhere "Check the free space and your rights, or save it elsewhere",
@@ -191,6 +194,7 @@ messages! {
         WindingNotPutBack "L and R could not be put back as they were before the run. Set them under Velocity loop, or switch the controller off and on: its EEPROM still has them.",
         GaveUp "Gave up connecting.",
         WentAhead { seconds: u64 } "The simulated time has gone {seconds} s ahead: this browser cannot draw the window in the middle of a run.",
+        StoppedWhileHidden "The motors were stopped when the page was hidden: a browser lets a hidden page work too seldom to drive one. Arm again when you are ready.",
         NoLinkThread "Could not open the link: the system gave no thread. Try again.",
         Of { target: String, text: Message } "{target}: {text}",
         PasteTooLong { bytes: usize, most: usize } "Nothing was pasted: the clipboard holds {bytes} bytes of text, and this place takes at most {most}.",
@@ -459,6 +463,7 @@ messages! {
         LinkLost "the link was lost.",
         Busy "the controller is busy.",
         NotBegun { why: Message } "The update did not begin: {why} Nothing was erased.",
+        NotFromPage "A web page cannot send firmware: the controller would be left in its loader. Do it with Brushwork installed on this computer.",
         CannotSend { why: Message } "{why}: switch the controller off and on.",
         NotFound { path: String, error: String } "Could not read {path}: {error}.",
         PortWaits { product: String } "{product}: waits for firmware, see Device > Firmware",

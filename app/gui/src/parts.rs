@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use brushwork_canopen::bus::Monitor;
-use brushwork_link::{Addresses, ConnectTarget, DeviceHandle, Failure, PortInfo};
+use brushwork_link::{Addresses, ConnectTarget, DeviceHandle, Failure, Message, PortInfo};
 use brushwork_plant::server::Pace;
 use brushwork_plant::world::{WorldAction, WorldView};
 use brushwork_script::debug::{Request, View, Wanted};
@@ -29,6 +29,19 @@ pub struct Parts {
 pub trait PortSource {
     /// A new list, if there is one since the last call.
     fn newest(&mut self) -> Option<Result<Vec<PortInfo>, Failure>>;
+
+    /// Whether ports have to be chosen before they are listed, as a browser has it.
+    fn can_choose(&self) -> bool {
+        false
+    }
+
+    /// Lets the user choose one.
+    fn choose(&mut self) {}
+
+    /// Why none was chosen, once.
+    fn take_refusal(&mut self) -> Option<Message> {
+        None
+    }
 }
 
 /// Opens links without keeping the window waiting.

@@ -68,6 +68,7 @@ messages! {
     /// What is to be known of who stops the motors when this program dies.
     pub enum GuardMessage {
         Missing { detail: String } "No second process watches over this line ({detail}): if this program dies, nothing but the controller's own time-out stops the motors.",
+        InPage { timeout_ms: u128 } "A closed tab cannot stop a motor. The page writes the stop when it is hidden or closed; where that does not get out, the controller stops the motors itself, {timeout_ms} ms after it last heard from here.",
     }
 }
 
@@ -238,6 +239,7 @@ messages! {
         TooOld "it waited for longer than a motion may live",
         NotArmed "the motors are not armed",
         NotStopped "the motors could not be stopped first",
+        NoTimeoutForPage "it has no time-out of its own, and a page whose tab is closed or whose browser is gone cannot stop a motor",
         NotStanding "the motors did not confirm that they stand",
         StopUnconfirmed { seconds: u64 } "it did not confirm within {seconds} s",
         LineIsShared "other controllers share this line",
@@ -272,6 +274,7 @@ messages! {
         SendWhenReady "Send it again when you are ready",
         AskWhenReady "Ask again when you are ready",
         ArmWhenReady "Arm again when you are ready",
+        DriveByProgram "Drive it from Brushwork installed on this computer, where a second process stops the motors when the program dies",
         PressStop "Press Stop, then try again",
         CutPower "Cut its motor power now: its motors may still be running",
         CutPowerFirst "Cut the motor power, then try again",

@@ -20,6 +20,7 @@ use crate::guardian;
 use crate::keep::Store;
 use crate::stop::outside;
 
+pub mod browser;
 pub mod bus;
 pub mod firmware;
 pub mod in_step;
@@ -64,11 +65,21 @@ pub enum SessionError {
         "Could not look for nodes on the CAN bus: this program has no family of controllers that are nodes."
     )]
     NoNodes,
-    /// A web page reaches no port and no network.
+    /// A web page reaches no network and no port but those that were chosen.
     #[error(
-        "{target} cannot be reached from a web page, which has simulated controllers alone. For a real one install Brushwork on this computer."
+        "{target} cannot be reached from a web page. A page has simulated controllers and the serial ports that were chosen for it in its \
+         browser; for anything else install Brushwork on this computer."
     )]
-    OnlySimulated {
+    NotFromPage {
+        /// What was to be opened.
+        target: String,
+    },
+    /// A web page turns all its links itself, and work on one of them may keep the others waiting.
+    #[error(
+        "{target} was not opened: a web page that reaches a real controller has no other link open, so that nothing keeps it from \
+         stopping the motors. Disconnect the other one first."
+    )]
+    OneAtATime {
         /// What was to be opened.
         target: String,
     },

@@ -34,7 +34,7 @@ use super::{SessionError, can_addresses};
 pub type Pause = fn() -> Duration;
 
 /// Events that may wait for a window which is not drawn in the middle of a job.
-const EVENTS: usize = 65_536;
+pub(super) const EVENTS: usize = 65_536;
 /// So far ahead of what the page has handed out, motion is let live on: no window can be drawn then, so that it does not hang. Less than
 /// motion lives by itself, and more than an exchange takes, so that a page which is not drawn lets motors stop.
 const RENEWED_AHEAD: Duration = Duration::from_millis(50);
@@ -378,6 +378,12 @@ impl TurnedLink {
         // A pause has let it go on: that much was not by itself.
         let limit = *time.limit.lock().unwrap_or_else(PoisonError::into_inner);
         time.now().saturating_sub(until.max(limit))
+    }
+
+    /// Whether nothing more is said over it.
+    #[must_use]
+    pub fn has_ended(&self) -> bool {
+        self.last_turns.is_some()
     }
 
     /// Whether it has ended and said so.

@@ -32,6 +32,12 @@ impl App {
         self.connect_to(&typed, target);
     }
 
+    /// Lets a port be chosen; it is the one in the list then.
+    pub(super) fn choose_port(&mut self) {
+        self.model.devices.is_choosing = true;
+        self.parts.ports.choose();
+    }
+
     /// Opens a link on a connection of its own, or brings the one that is open to the front.
     pub(super) fn connect_to(&mut self, typed: &str, target: Result<ConnectTarget, TargetError>) {
         let target = match target {

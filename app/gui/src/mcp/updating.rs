@@ -4,6 +4,7 @@ use brushwork_core::keep::UnitId;
 use brushwork_link::Message;
 use brushwork_link::device::{Request, RiskAccepted};
 use brushwork_link::transport::ConnectTarget;
+use brushwork_link::work::HAS_THREADS;
 use egui::Context;
 
 use super::model::firmware::{FirmwareAction, Next};
@@ -57,6 +58,10 @@ fn begin_update(host: &mut dyn Host) -> Result<(), Message> {
     let firmware = &model.front.mcp().firmware;
     if !firmware.accepted || firmware.stage.is_running() {
         return Ok(());
+    }
+    // What sends it has a thread of its own. Without one the controller would be left in its loader.
+    if !HAS_THREADS {
+        return Err(FirmwareMessage::NotFromPage.into());
     }
     if firmware.resumed_model.is_some() {
         let target = match model.front.target.as_ref().filter(|_| model.front.phase == Phase::Closed) {

@@ -35,6 +35,10 @@ pub enum Choice {
 #[derive(Clone, Debug)]
 pub struct Devices {
     pub ports: Vec<PortInfo>,
+    /// Whether ports have to be chosen before they are listed, as a browser has it.
+    pub can_choose: bool,
+    /// Whether the next port that comes is the one that was asked for.
+    pub is_choosing: bool,
     pub listing_failure: Option<Failure>,
     pub choice: Choice,
     pub typed: String,
@@ -54,6 +58,8 @@ impl Default for Devices {
     fn default() -> Self {
         Self {
             ports: Vec::new(),
+            can_choose: false,
+            is_choosing: false,
             listing_failure: None,
             choice: Choice::default(),
             typed: String::new(),
@@ -71,6 +77,11 @@ impl Devices {
     pub fn set_ports(&mut self, listed: Result<Vec<PortInfo>, Failure>) {
         match listed {
             Ok(ports) => {
+                let newcomer = ports.iter().find(|port| !self.ports.contains(port));
+                if let Some(chosen) = newcomer.filter(|_| self.is_choosing) {
+                    self.choice = Choice::Port(chosen.name.clone());
+                    self.is_choosing = false;
+                }
                 self.ports = ports;
                 self.listing_failure = None;
             }

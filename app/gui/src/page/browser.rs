@@ -134,6 +134,11 @@ async fn bring(file: &File) -> Option<PathBuf> {
 fn answer(chosen: &Sender<Vec<PathBuf>>, paths: Vec<PathBuf>) {
     // The window may have gone on without the answer.
     let _ = chosen.try_send(paths);
+    wake_window();
+}
+
+/// Has the window drawn although nobody touches it.
+pub fn wake_window() {
     WINDOW.with(|window| {
         if let Some(ctx) = &*window.borrow() {
             ctx.request_repaint();

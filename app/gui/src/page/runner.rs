@@ -4,6 +4,7 @@ use std::cell::RefCell;
 use std::time::Duration;
 
 use brushwork_core::keep::{Keeping, Store};
+use brushwork_link::Channel;
 use brushwork_link::clock::Instant;
 use brushwork_link::files;
 use eframe::{WebOptions, WebRunner};
@@ -13,7 +14,8 @@ use web_sys::HtmlCanvasElement;
 
 use super::browser::{self, BrowserShelf};
 use super::labels::{self, Labels};
-use super::{Links, NoPorts, PageOpener};
+use super::serial::ThisBrowser;
+use super::{Links, PageOpener, Ports};
 use crate::app::App;
 use crate::messages::WindowStatusMessage;
 use crate::parts::{Parts, SimulatedWorld};
@@ -79,9 +81,10 @@ async fn start() -> Result<(), JsValue> {
         let ctx = &creation.egui_ctx;
         browser::set_window(ctx);
         ctx.add_plugin(Labels);
+        let ports = Ports::new(Box::new(ThisBrowser::new()));
         let parts = Parts {
-            ports: Box::new(NoPorts::default()),
-            opener: Box::new(PageOpener(links.clone())),
+            ports: Box::new(ports.clone()),
+            opener: Box::new(PageOpener { links: links.clone(), ports }),
             keeping: Keeping::new(Store::of_user()),
         };
         let (memory, trouble) = Memory::open();
@@ -112,6 +115,9 @@ impl eframe::App for Page {
         if ahead >= TOLD_AHEAD {
             self.app.model.messages.note(WindowStatusMessage::WentAhead { seconds: ahead.as_secs() });
         }
+        if self.links.take_hidden() {
+            self.app.model.messages.warn(WindowStatusMessage::StoppedWhileHidden);
+        }
         self.app.contents(ui);
     }
 
@@ -129,6 +135,21 @@ pub fn brushwork_turn() {
     }
 }
 
+/// The page is hidden, and its script has written the stop that was held. The page's script calls it.
+#[wasm_bindgen]
+pub fn brushwork_hidden() {
+    let links = LINKS.with(|links| links.borrow().clone());
+    if let Some(links) = links {
+        links.hidden();
+    }
+}
+
+/// The browser has other ports than before. The page's script calls it.
+#[wasm_bindgen]
+pub fn brushwork_ports_changed() {
+    browser::wake_window();
+}
+
 /// What is connected and what the window has said, in JSON, for whoever tests the page from outside.
 #[wasm_bindgen]
 #[must_use]
@@ -142,6 +163,7 @@ pub fn brushwork_seen() -> String {
     serde_json::json!({
         "connected": front.is_connected(),
         "arming": format!("{:?}", front.link.arming),
+        "battery_volts": front.link.readings.get(Channel::MAIN_BATTERY),
         "screen": page.app.model.screen.title(),
         "tuning": front.tune.is_running(),
         "outputs": axes.iter().map(|axis| format!("{:?}", axis.output)).collect::<Vec<_>>(),

@@ -68,6 +68,12 @@ fn ports_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         (Some(failure), _) => {
             ui.label(failure.to_string());
         }
+        (None, true) if model.devices.can_choose => {
+            ui.label(word(
+                "start",
+                "A page reaches a serial port once you have chosen it. The next time it is here by itself.",
+            ));
+        }
         (None, true) => {
             ui.label(word(
                 "start",
@@ -76,7 +82,14 @@ fn ports_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
         }
         (None, false) => {}
     }
-    if cfg!(target_family = "wasm") {
+    if model.devices.can_choose {
+        let hint = word("start", "The browser lists the ports of this computer");
+        if ui.button(word("start", "Choose a serial port…")).on_hover_text(hint).clicked() {
+            commands.push(Command::ChoosePort);
+        }
+        ui.weak(word("start", "Family, baud rate and address are chosen at the left. Motors are driven only where the controller stops them by itself when the page is gone."));
+    }
+    if model.devices.can_choose || cfg!(target_family = "wasm") {
         return;
     }
     ui.weak(word("start", "Family, baud rate and address are chosen at the left, where a path, tcp:HOST:PORT or a CAN adapter can be typed too."));

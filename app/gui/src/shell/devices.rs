@@ -29,7 +29,11 @@ pub fn devices_ui(ui: &mut Ui, model: &mut Model, commands: &mut Commands) {
     for row in rows(model) {
         row_ui(ui, &row, model, commands);
     }
-    if model.devices.ports.is_empty() {
+    if model.devices.can_choose {
+        if ui.button(word("bar", "Choose a serial port…")).clicked() {
+            commands.push(Command::ChoosePort);
+        }
+    } else if model.devices.ports.is_empty() {
         hint_ui(ui, &model.devices);
     }
     ui.horizontal(|ui| {

@@ -1,6 +1,7 @@
 //! The window without a display, against simulated controllers in virtual time.
 
 mod album;
+mod browser_ports;
 mod buses;
 mod clamp;
 mod debugger;

@@ -1,15 +1,18 @@
 //! The window as a page has it: no thread for any link, the simulated machine in the program, time by the frame. The page's own opener is what
 //! is tested; the browser around it is not.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use brushwork_core::keep::{Keeping, Store};
+use brushwork_core::session::browser::BrowserPort;
 use brushwork_gui::App;
 use brushwork_gui::model::Screen;
 use brushwork_gui::model::link::Arming;
-use brushwork_gui::page::{Links, NoPorts, PageOpener};
+use brushwork_gui::page::{Browser, Granted, Links, PageOpener, Ports};
 use brushwork_gui::parts::{Parts, SimulatedWorld};
 use brushwork_gui::tune::Loop;
+use brushwork_link::{Clock as _, VirtualClock};
 use brushwork_plant::bridge::BridgeOutput;
 use brushwork_plant::world::{WorldAction, WorldView};
 use brushwork_script::debug::Wanted;
@@ -25,22 +28,55 @@ use crate::support::install_families;
 
 const FRAME: Duration = Duration::from_millis(20);
 
-struct Page {
-    harness: Harness<'static, Option<App>>,
-    links: Links,
+pub struct Page {
+    pub harness: Harness<'static, Option<App>>,
+    pub links: Links,
     folder: tempfile::TempDir,
+    /// The time of the browser, where that is one of its own.
+    clock: VirtualClock,
+}
+
+/// A browser without serial ports.
+struct Portless;
+
+impl Browser for Portless {
+    fn reaches_ports(&self) -> bool {
+        false
+    }
+
+    fn granted(&self) -> Option<Vec<Granted>> {
+        None
+    }
+
+    fn choose(&self) {}
+
+    fn take_refusal(&self) -> Option<String> {
+        None
+    }
+
+    fn open(&self, number: u32, _baud: u32) -> Arc<dyn BrowserPort> {
+        panic!("there is no port {number}")
+    }
 }
 
 impl Page {
     /// A page that was opened with a target in its address.
     fn open(target: &str) -> Self {
         install_families();
+        let mut page = Self::in_browser(Box::new(Portless), VirtualClock::new());
+        page.app().open(target);
+        page.pass_ms(5000);
+        page
+    }
+
+    /// A page in a browser whose time is `clock`.
+    pub fn in_browser(browser: Box<dyn Browser>, clock: VirtualClock) -> Self {
         let folder = tempfile::tempdir().expect("a temporary folder can be made");
         let links = Links::default();
         let keeping = Keeping::new(Store::at(folder.path()));
-        let opener = Box::new(PageOpener(links.clone()));
-        let mut parts = Some(Parts { ports: Box::new(NoPorts::default()), opener, keeping });
-        let target = target.to_owned();
+        let ports = Ports::new(browser);
+        let opener = Box::new(PageOpener { links: links.clone(), ports: ports.clone() });
+        let mut parts = Some(Parts { ports: Box::new(ports), opener, keeping });
         let harness = HarnessBuilder::default()
             .with_size([1280.0, 800.0])
             .with_step_dt(FRAME.as_secs_f32())
@@ -49,17 +85,13 @@ impl Page {
             .build_ui_state(
                 move |ui, slot: &mut Option<App>| {
                     slot.get_or_insert_with(|| {
-                        let mut app = App::new(ui.ctx(), parts.take().expect("the window is made once"));
-                        app.open(&target);
-                        app
+                        App::new(ui.ctx(), parts.take().expect("the window is made once"))
                     })
                     .contents(ui);
                 },
                 None,
             );
-        let mut page = Self { harness, links, folder };
-        page.pass_ms(5000);
-        page
+        Self { harness, links, folder, clock }
     }
 
     /// One that is connected.
@@ -69,22 +101,24 @@ impl Page {
         page
     }
 
-    fn app(&mut self) -> &mut App {
+    pub fn app(&mut self) -> &mut App {
         self.harness.state_mut().as_mut().expect("the first frame made it")
     }
 
-    fn said(&mut self) -> Vec<String> {
+    pub fn said(&mut self) -> Vec<String> {
         self.app().model.messages.past().map(|message| message.text.to_string()).collect()
     }
 
-    fn pass_ms(&mut self, milliseconds: u64) {
+    pub fn pass_ms(&mut self, milliseconds: u64) {
         for _ in 0..milliseconds.div_ceil(20) {
+            let until = self.clock.now() + FRAME;
             self.links.turn(FRAME);
+            self.clock.advance_to(until);
             self.harness.step();
         }
     }
 
-    fn press(&mut self, label: &str) {
+    pub fn press(&mut self, label: &str) {
         let is_meant = |node: &Node<'_>| !matches!(node.accesskit_node().role(), Role::Label | Role::Heading);
         let node = self.harness.query_all_by_label(label).find(is_meant);
         node.unwrap_or_else(|| panic!("there is no {label} to be pressed")).click();
@@ -92,7 +126,7 @@ impl Page {
         self.pass_ms(200);
     }
 
-    fn enter(&mut self, field: &str, number: &str) {
+    pub fn enter(&mut self, field: &str, number: &str) {
         self.harness.get_by_label(field).focus();
         self.pass_ms(100);
         self.harness.get_by_label(field).type_text(number);
@@ -101,7 +135,7 @@ impl Page {
         self.pass_ms(200);
     }
 
-    fn arm_on(&mut self, screen: &str) {
+    pub fn arm_on(&mut self, screen: &str) {
         self.press(screen);
         self.press("Arm");
         self.pass_ms(500);
@@ -176,7 +210,8 @@ fn a_page_has_every_family_with_the_world_around_it() {
     alone("page::a_page_has_every_family_with_the_world_around_it", LIMIT, every_family);
 }
 
-fn every_family() {
+/// Names all families of the program, where this process has no others yet.
+pub fn install_all_families() {
     brushwork_link::install(&[
         &brushwork_mcp_client::McpDriver,
         &brushwork_motion_mind_client::MotionMindDriver,
@@ -195,6 +230,10 @@ fn every_family() {
         &brushwork_gui::suprmotr::SuprMotr,
         &brushwork_gui::motorvator::Motorvator,
     ]);
+}
+
+fn every_family() {
+    install_all_families();
     for target in ["sim:mcp266,can", "sim:motion-mind-3", "sim:suprmotr-v9", "sim:motorvator-3"] {
         let mut page = Page::connected(target);
         let axes = page.truth().axes.len();
@@ -237,6 +276,6 @@ fn a_port_is_refused_in_a_sentence_that_says_what_reaches_it() {
     assert!(!page.app().model.front.is_connected());
     let said = page.said();
     assert!(said.iter().any(|text| text.contains("install Brushwork on this computer")), "{said:?}");
-    let listing = page.app().model.devices.listing_failure.clone().expect("a page has no ports");
-    assert!(listing.to_string().contains("has simulated controllers alone"), "{listing}");
+    let listing = page.app().model.devices.listing_failure.clone().expect("this browser has no ports");
+    assert!(listing.to_string().contains("open the page in Chrome, Edge or another Chromium"), "{listing}");
 }

@@ -103,6 +103,12 @@ pub trait Controller: Send {
         stream: Option<Stream>,
     ) -> Result<ArmCheck, ExchangeError>;
 
+    /// Whether its kind of controller can stop its motors by itself when nobody speaks to it any more. Whether this one is set to do so is found
+    /// out by [`Controller::check_arming`].
+    fn has_timeout(&self) -> bool {
+        true
+    }
+
     /// The settings that a stop may change for a while, as the unit holds them when nothing of that is under way; known after
     /// [`Controller::check_arming`].
     fn lends(&self) -> SettingsImage {

@@ -67,6 +67,9 @@ pub struct DeviceOptions {
     pub loans: Option<Arc<dyn KeepsLoans>>,
     /// What stops the motors when this program dies; none where the controllers are simulated inside of it, and die with it.
     pub guardian: Option<Arc<dyn Guardian>>,
+    /// Whether this program is a page in a browser and the controller is real. No second process outlives a tab, so that nothing is armed whose
+    /// controller does not stop its motors by itself.
+    pub in_page: bool,
     /// How often the signals are read at first.
     pub poll: PollRate,
     /// Events that the channel to the window holds.
@@ -86,6 +89,7 @@ impl Default for DeviceOptions {
             capabilities: None,
             loans: None,
             guardian: None,
+            in_page: false,
             poll: PollRate::DEFAULT,
             event_capacity: 1024,
             request_capacity: 64,

@@ -103,6 +103,19 @@ pub enum OpenError {
         /// What the operating system said.
         detail: String,
     },
+    /// A browser did not open it for its page.
+    #[error(
+        "Could not open {path} at {baud} baud: the browser says \"{said}\" Another program or tab may hold it, or your user may have no right \
+         to it. Close the other one; the installed program tells more."
+    )]
+    Browser {
+        /// The name it has in the page.
+        path: String,
+        /// The baud rate asked for.
+        baud: u32,
+        /// The browser's own sentence.
+        said: String,
+    },
     /// The TCP connection was not made.
     #[error(
         "Could not connect to tcp:{address}: {source}. Check that the server runs and that host and port are right."

@@ -10,7 +10,7 @@ use crate::device::request::Request;
 use crate::device::signals::MOTION_LIFE;
 use crate::exchange::ExchangeError;
 use crate::failure::Failure;
-use crate::messages::{ActMessage, CauseMessage, RemedyMessage};
+use crate::messages::{ActMessage, CauseMessage, GuardMessage, RemedyMessage};
 use brushwork_values::{Message, Motor, Value};
 use std::time::Duration;
 
@@ -157,6 +157,10 @@ impl DeviceLoop {
         if overtaken {
             return self.refuse(scope, CauseMessage::StoppedSince, RemedyMessage::ArmWhenReady);
         }
+        let without_timeout = self.unstopped_by_themselves();
+        if !without_timeout.is_empty() {
+            return self.refuse_in_page(scope, without_timeout);
+        }
         let stream = self.stream;
         let now = self.clock.now();
         let mut all = ArmCheck::default();
@@ -189,8 +193,29 @@ impl DeviceLoop {
         }
     }
 
+    /// The units to be armed that would go on when the tab of this page is closed. They are not even asked: asking switches the motor of some on.
+    fn unstopped_by_themselves(&self) -> Vec<usize> {
+        let units = self.together().filter(|index| !self.units[*index].controller.has_timeout());
+        units.filter(|_| self.options.in_page).collect()
+    }
+
+    fn refuse_in_page(&mut self, scope: ArmScope, units: Vec<usize>) {
+        let (cause, remedy) = (CauseMessage::NoTimeoutForPage, RemedyMessage::DriveByProgram);
+        let refused = |index| {
+            Failure::new(ActMessage::Arm { scope }, self.name_of(index), cause.clone(), remedy.clone())
+        };
+        let reasons = units.into_iter().map(refused).collect();
+        self.outbox.send(Event::ArmRefused { scope, reasons });
+    }
+
     fn enter_armed(&mut self, scope: ArmScope, check: ArmCheck, disarms: u64) {
         let ArmCheck { controller_timeout, mut warnings, .. } = check;
+        if self.options.in_page {
+            let Some(timeout) = controller_timeout else {
+                return self.refuse_in_page(scope, self.together().collect());
+            };
+            warnings.push(GuardMessage::InPage { timeout_ms: timeout.as_millis() }.into());
+        }
         let armed = Armed { scope, controller_timeout };
         warnings.extend(self.have_guard());
         for index in self.together() {

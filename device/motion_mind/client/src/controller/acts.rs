@@ -57,6 +57,10 @@ impl Controller for MotionMind {
         stopping::other_drivers(self, line)
     }
 
+    fn has_timeout(&self) -> bool {
+        false
+    }
+
     fn check_arming(
         &mut self,
         line: &mut Line<'_>,

@@ -51,6 +51,10 @@ impl Controller for SuprMotr {
         stopping::other_drivers(self, line)
     }
 
+    fn has_timeout(&self) -> bool {
+        false
+    }
+
     fn check_arming(
         &mut self,
         line: &mut Line<'_>,
