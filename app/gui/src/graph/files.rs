@@ -63,6 +63,8 @@ pub struct GraphFiles {
     /// What is recorded from, in the recording's head.
     pub device: String,
     recording: Option<Recording>,
+    /// Those before it that are still being closed.
+    finishing: Vec<Recording>,
     loading: Option<Loading>,
     /// Those that are read after it.
     waiting: VecDeque<(PathBuf, OpenAs)>,
@@ -118,6 +120,7 @@ impl Default for GraphFiles {
             open_as: OpenAs::default(),
             device: String::new(),
             recording: None,
+            finishing: Vec::new(),
             loading: None,
             waiting: VecDeque::new(),
             working: Vec::new(),
@@ -146,6 +149,7 @@ impl GraphFiles {
     /// Something is going on that will have to be told.
     pub fn is_busy(&self) -> bool {
         self.recording.is_some()
+            || !self.finishing.is_empty()
             || self.loading.is_some()
             || self.dialog.is_some()
             || self.copying.is_some()

@@ -28,6 +28,30 @@ struct Drawn {
     title: String,
 }
 
+impl Recording {
+    /// What became of it, once it has ended.
+    fn told(&self) -> Option<Said> {
+        let progress = self.recorder.progress();
+        let path = self.recorder.path().display().to_string();
+        Some(match progress.ended? {
+            Err(failure) => (Gravity::Error, failure),
+            Ok(()) if progress.dropped > 0 => {
+                let (samples, lost) = (progress.samples, progress.dropped);
+                (Gravity::Warning, GraphMessage::RecordedInPart { samples, path, lost }.into())
+            }
+            Ok(()) => {
+                let (samples, size) = (progress.samples, size_text(progress.bytes));
+                let said = match self.stopping {
+                    Some(Stopping::LinkEnded) => GraphMessage::RecordedUntilLost { samples, path, size },
+                    Some(Stopping::OtherChannels) => GraphMessage::RecordedUntilOther { samples, path, size },
+                    Some(Stopping::Asked) | None => GraphMessage::Recorded { samples, path, size },
+                };
+                (Gravity::Note, said.into())
+            }
+        })
+    }
+}
+
 impl LiveGraph {
     /// Looks after files: once per frame. `now` is the link's time, while there is a link.
     pub fn poll_files(&mut self, now: Option<Duration>, dark: bool) -> Vec<Said> {
@@ -48,27 +72,14 @@ impl LiveGraph {
     }
 
     fn poll_recording(&mut self, said: &mut Vec<Said>) {
-        let Some(recording) = &self.files.recording else { return };
-        let progress = recording.recorder.progress();
-        let Some(ended) = progress.ended else { return };
-        let path = recording.recorder.path().display().to_string();
-        said.push(match ended {
-            Err(failure) => (Gravity::Error, failure),
-            Ok(()) if progress.dropped > 0 => {
-                let (samples, lost) = (progress.samples, progress.dropped);
-                (Gravity::Warning, GraphMessage::RecordedInPart { samples, path, lost }.into())
-            }
-            Ok(()) => {
-                let (samples, size) = (progress.samples, size_text(progress.bytes));
-                let said = match recording.stopping {
-                    Some(Stopping::LinkEnded) => GraphMessage::RecordedUntilLost { samples, path, size },
-                    Some(Stopping::OtherChannels) => GraphMessage::RecordedUntilOther { samples, path, size },
-                    Some(Stopping::Asked) | None => GraphMessage::Recorded { samples, path, size },
-                };
-                (Gravity::Note, said.into())
-            }
-        });
-        self.files.recording = None;
+        let mut goes_on = |recording: &Recording| {
+            let told = recording.told();
+            let goes_on = told.is_none();
+            said.extend(told);
+            goes_on
+        };
+        self.files.finishing.retain(&mut goes_on);
+        self.files.recording.take_if(|recording| !goes_on(recording));
     }
 
     fn poll_loading(&mut self, said: &mut Vec<Said>) {
@@ -136,9 +147,11 @@ impl LiveGraph {
 
     /// Begins to record what comes in from now on.
     pub fn record(&mut self, form: Form) {
-        if self.files.recording.is_some() {
+        if self.files.is_recording() {
             return;
         }
+        // A slow disk may still be at the last one.
+        self.files.finishing.extend(self.files.recording.take());
         let base = self
             .files
             .clocks
