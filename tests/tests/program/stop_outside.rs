@@ -55,30 +55,36 @@ fn assert_tells(ending: &Ending, unit: &str, holder: &Program, command: &str) {
     assert_eq!(ending.stderr[0], by);
 }
 
+/// A drive on a new controller is stopped from outside at `place_of` where it is served. Once more where this machine was too crowded for the
+/// controller to answer: what goes through a pseudo-terminal may then be half a second late.
+fn assert_drive_is_stopped<M: Machine + 'static>(
+    serve: impl Fn() -> Served<M>,
+    place_of: impl Fn(&str) -> String,
+    more: &[&str],
+    stopped: &str,
+) {
+    for left in (0..TRIES).rev() {
+        let served = serve();
+        let drive = driving_on(&served);
+        let ending = stop(&place_of(&served.target), more);
+        assert_off(&served);
+        if left == 0 || !ending.found_silence() {
+            assert_tells(&ending, stopped, &drive, "drive");
+            return assert_was_told(drive);
+        }
+    }
+}
+
 #[test]
 fn a_drive_is_stopped_from_outside_on_either_family_over_serial_and_tcp() {
     let stopped = "0x80: both motors stopped";
-    let served = Served::on_pty(mcp(), ",stream=usb");
-    let drive = driving_on(&served);
-    let ending = stop(&served.target, &[]);
-    assert_off(&served);
-    assert_tells(&ending, stopped, &drive, "drive");
-    assert_was_told(drive);
-
-    let served = Served::on_tcp(mcp(), ",stream=usb");
-    let drive = driving_on(&served);
+    assert_drive_is_stopped(|| Served::on_pty(mcp(), ",stream=usb"), str::to_owned, &[], stopped);
     // Another name of the same place.
-    let ending = stop(&served.target.replace("127.0.0.1", "localhost"), &["--address", "0x80"]);
-    assert_off(&served);
-    assert_tells(&ending, stopped, &drive, "drive");
-    assert_was_told(drive);
-
-    let served = Served::on_pty(motion_mind(), ",family=motion-mind");
-    let drive = driving_on(&served);
-    let ending = stop(&served.target, &[]);
-    assert_off(&served);
-    assert_tells(&ending, "unit 1: motor stopped", &drive, "drive");
-    assert_was_told(drive);
+    let localhost = |target: &str| target.replace("127.0.0.1", "localhost");
+    let address = ["--address", "0x80"];
+    assert_drive_is_stopped(|| Served::on_tcp(mcp(), ",stream=usb"), localhost, &address, stopped);
+    let mind = || Served::on_pty(motion_mind(), ",family=motion-mind");
+    assert_drive_is_stopped(mind, str::to_owned, &[], "unit 1: motor stopped");
 }
 
 #[test]
