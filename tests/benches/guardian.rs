@@ -168,10 +168,10 @@ mod killing {
             Self((0..count).map(|_| Child::spawn(&command, [(); 3].map(|()| Stdio::null()))).collect())
         }
 
-        /// On a pseudo-terminal; for a window on a busy machine by TCP: the kernel hands on what goes through a terminal by a thread of its own,
-        /// there up to half a second late, and a window that hears nothing for a quarter second stops by itself before it is attacked.
+        /// On a pseudo-terminal; on a busy machine by TCP, but for `drive`: the kernel hands on what goes through a terminal by a thread of its own,
+        /// there up to half a second late, and who hears nothing for a quarter second stops by itself before the attack.
         fn serve<M: Machine + 'static>(&self, attack: Attack, machine: M, options: &str) -> Served<M> {
-            if attack.wants_display() && !self.0.is_empty() {
+            if attack != Attack::Drive && !self.0.is_empty() {
                 Served::on_tcp(machine, options)
             } else {
                 Served::on_pty(machine, options)
