@@ -24,7 +24,7 @@ OPENS_IN_S = 3.0
 # Text is smoothed by another painter: so much of a picture may differ, and by so much a pixel counts as another.
 MOST_DIFFERENT, SAME = 0.06, 48
 # What the page says on a crowded machine, where it is drawn too seldom or its simulated controller has no processor; so often a motor is driven again.
-CROWDED = ("this computer answered late", "the controller does not answer any more", "it waited for longer than a motion may live")
+CROWDED = ("this computer answered late", "no answer came in time", "it waited for longer than a motion may live")
 TRIES = 20
 
 

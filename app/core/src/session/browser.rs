@@ -201,9 +201,7 @@ impl BrowserLink {
     pub fn is_over(&self) -> bool {
         self.last_turns == Some(0)
     }
-}
 
-impl BrowserLink {
     fn give_back(&mut self) {
         if !std::mem::replace(&mut self.is_given_back, true) {
             self.port.close();
