@@ -63,6 +63,8 @@ pub struct MotorMonitor {
     pub stall_amps: Option<f64>,
     /// Noise of the readings of the current at rest, root mean square, A; 0 before the probe.
     pub(crate) noise_amps: f64,
+    /// The highest of these readings, A; 0 before the probe.
+    pub(crate) highest_rest_amps: f64,
     /// The current limit over the stall current, where there is one.
     pub drive_limit: Option<f64>,
     /// Duty at which the motor began to move; 0 before the probe.

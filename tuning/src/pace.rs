@@ -99,7 +99,14 @@ impl Pace {
         self.longest.filter(|longest| longest.longest_s > limit_s)
     }
 
-    /// The same, or where each of the exchanges, which took so long, took another time, so that nobody knows when what was read.
+    /// The longest gap, where this computer took most of the time of all.
+    pub(crate) fn computer_late(&self) -> Option<Late> {
+        let (stolen_s, all_s) = (self.stolen_each_s.iter().sum::<f64>(), self.gaps_s.iter().sum::<f64>());
+        let longest_s = self.longest?.longest_s;
+        (2.0 * stolen_s >= all_s).then_some(Late { stolen_s: longest_s, ..self.longest? })
+    }
+
+    /// The longest gap, where it was a late one, or where each of the exchanges, which took so long, took another time, so that nobody knows when what was read.
     pub(crate) fn late(&self, took_s: &[f64]) -> Option<Late> {
         self.late_gap().or_else(|| self.unsteady(took_s))
     }

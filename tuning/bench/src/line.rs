@@ -167,6 +167,10 @@ impl<M: Bench> SimulatedLine<M> {
         }
     }
 
+    pub(crate) fn usual_latency_s(&self) -> f64 {
+        self.params.latency_s
+    }
+
     pub(crate) fn latency(&mut self) -> Duration {
         let mut draw = Draw(self.draw.clone());
         let mut seconds = self.params.latency_s * draw.between(LATENCY_SPREAD);

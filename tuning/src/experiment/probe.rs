@@ -1,14 +1,16 @@
 //! The wiring probe: a slow duty ramp that finds a wrong sign, a dead encoder, an open motor or a locked shaft before any loop is
 //! closed, and the duty at which the motor starts.
 
+use crate::axis::EncoderClass;
 use crate::cause::Cause;
 use crate::experiment_guard::ExperimentGuard;
 use crate::law::Law;
 use crate::motor_monitor::{NO_CURRENT_AMPS, NOISES};
 use serde::{Deserialize, Serialize};
 
-/// Time at rest first, s.
+/// Time at rest first, s, and how long a motor that still turns is waited for: as long as at the end of a run.
 const REST_S: f64 = 0.12;
+const LONGEST_STAND_S: f64 = 3.0;
 /// The ramp: first duty, step, highest duty, time per step in s.
 const FIRST_DUTY: f64 = 0.04;
 const DUTY_STEP: f64 = 0.02;
@@ -38,15 +40,16 @@ pub struct Probe {
 /// Runs it. The motor is braked when it returns.
 pub fn run_probe<L: Law>(guard: &mut ExperimentGuard<'_, L>, direction: f64) -> Result<Probe, Cause> {
     guard.duty(0.0)?;
-    guard.poll_for(REST_S, false)?;
-    guard.refuse_slow_line()?;
+    let rest_s = stand(guard)?;
+    let standing = || guard.points.iter().filter(|point| point.t >= rest_s);
     let rest = guard.points.last().map_or(0.0, |p| p.counts);
-    let noise = spread(guard.points.iter().map(|p| p.counts));
-    let noise_counts = deviation(guard.points.iter().map(|p| p.counts));
+    let noise = spread(standing().map(|p| p.counts));
+    let noise_counts = deviation(standing().map(|p| p.counts));
     let volts = guard.mean_volts(0.0, f64::INFINITY);
-    let at_rest: Vec<f64> = guard.points.iter().filter_map(|point| point.amps).collect();
+    let at_rest: Vec<f64> = standing().filter_map(|point| point.amps).collect();
     let squares: f64 = at_rest.iter().map(|amps| amps * amps).sum();
     guard.monitor.noise_amps = (squares / at_rest.len().max(1) as f64).sqrt();
+    guard.monitor.highest_rest_amps = at_rest.iter().map(|amps| amps.abs()).fold(0.0, f64::max);
     let no_current = guard.monitor.no_current_amps();
     let mut readings: Vec<(f64, f64)> = Vec::new();
     let highest = LAST_DUTY.min(guard.options.max_duty);
@@ -87,6 +90,26 @@ pub fn run_probe<L: Law>(guard: &mut ExperimentGuard<'_, L>, direction: f64) -> 
             Ok(Probe { start_duty, stall_amps, volts, peak_amps, noise_counts })
         }
         None => Err(nothing_moved(guard, &readings, peak_amps, steepest)?),
+    }
+}
+
+/// Polls the motor at rest, and gives from when on it stands. One that still turns is waited for: its counts would pass for noise that hides the
+/// first motion, and its braking for noise of the current.
+fn stand<L: Law>(guard: &mut ExperimentGuard<'_, L>) -> Result<f64, Cause> {
+    let first_s = guard.now_s();
+    let mut from_s = first_s;
+    loop {
+        guard.poll_for(REST_S, false)?;
+        guard.refuse_slow_line()?;
+        let counts = || guard.points.iter().filter(|point| point.t >= from_s).map(|point| point.counts);
+        let turned = counts().next().zip(counts().next_back()).map_or(0.0, |(first, last)| last - first);
+        // What an absolute encoder reads at rest is noise.
+        let is_turning = guard.setup.encoder == EncoderClass::Quadrature && turned.abs() > MOTION_COUNTS;
+        let now_s = guard.now_s();
+        if !is_turning || now_s - first_s > LONGEST_STAND_S {
+            return Ok(from_s);
+        }
+        from_s = now_s;
     }
 }
 

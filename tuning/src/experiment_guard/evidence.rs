@@ -116,11 +116,7 @@ impl<L: Law> ExperimentGuard<'_, L> {
 
     /// Whether the current of the driven motor, as last read, could be the noise of readings at rest.
     fn is_current_unclear(&self) -> bool {
-        let driven_s = self.drives.iter().find(|drive| drive.input != Input::Duty(0.0)).map(|drive| drive.t);
-        let driven_s = driven_s.unwrap_or(f64::INFINITY);
-        let at_rest =
-            self.points.iter().take_while(|point| point.t < driven_s).filter_map(|point| point.amps);
-        let noise_amps = at_rest.map(f64::abs).fold(0.0, f64::max);
+        let noise_amps = self.monitor.highest_rest_amps;
         if noise_amps <= NO_CURRENT_AMPS {
             return false;
         }

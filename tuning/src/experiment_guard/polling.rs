@@ -2,12 +2,13 @@
 
 use super::{ExperimentGuard, cause_of, retried};
 use crate::axis::{
-    ABSOLUTE_COUNTS, AMPS_PER_RAW, AxisError, EncoderClass, FULL_DUTY_RAW, Sample, VOLTS_PER_RAW, Want,
+    ABSOLUTE_COUNTS, AMPS_PER_RAW, AxisError, EncoderClass, Exchange, FULL_DUTY_RAW, Sample, VOLTS_PER_RAW,
+    Want,
 };
 use crate::cause::Cause;
 use crate::law::Law;
 use crate::pace::quantile;
-use crate::poll::{Input, Point};
+use crate::poll::{Drive, Input, Point};
 use std::time::Duration;
 
 /// Time between close polls over that between the usual ones, where the line is that quick: counts and duty alone take two exchanges of four.
@@ -26,6 +27,8 @@ const LINK_LOST_POLLS: u32 = 5;
 const OFF_WITHIN_S: f64 = 0.25;
 /// The longest time between two readings with which that can be kept: one reading, one that is waited for in vain, and the command.
 const SLOWEST_READING_S: f64 = 0.1;
+/// Readings that show it: each of so many in a row would have to be late on a quicker line.
+const LINE_READINGS: usize = 5;
 /// Counts that began anew are told from a motor that moved by a jump of more than this many times what full speed makes in the time since the
 /// last poll: twice, since that time is known to a poll at each end and full speed to a few percent.
 const RESET_REACH: f64 = 2.0;
@@ -90,7 +93,7 @@ impl<L: Law> ExperimentGuard<'_, L> {
         (self.silent_since_s, self.silent_polls) = (None, 0);
         let before = self.points.last().map(|point| (point.t, point.counts));
         let point = self.point_of(&sample);
-        if before.is_some_and(|before| self.counts_anew(before, &point)) {
+        if before.is_some_and(|before| self.counts_anew(before, &point, sample.counts_at)) {
             return Err(Cause::WasReset);
         }
         let unreported = [
@@ -146,16 +149,24 @@ impl<L: Law> ExperimentGuard<'_, L> {
         retried(|| self.axis.raw_speed())
     }
 
-    /// Refuses a line on which a motor could not be switched off in time after lost replies: the quickest of the readings so far, of a motor that has not
-    /// been driven, shows what it takes by itself.
-    pub(crate) fn refuse_slow_line(&self) -> Result<(), Cause> {
-        let gaps = self.points.windows(2).map(|pair| pair[1].t - pair[0].t);
-        let quickest_s = gaps.fold(f64::INFINITY, f64::min);
-        if self.setup.stream_timeout_ms.is_some() && quickest_s.is_finite() && quickest_s > SLOWEST_READING_S
-        {
-            return Err(Cause::LineTooSlow { reading_ms: (1e3 * quickest_s).round() as u32 });
+    /// Refuses a line on which a motor could not be switched off in time after lost replies: the quickest of some readings of a motor that has not
+    /// been driven shows what the line takes by itself. A computer that was late for most of that time was not kept waiting by the line.
+    pub(crate) fn refuse_slow_line(&mut self) -> Result<(), Cause> {
+        if self.setup.stream_timeout_ms.is_none() {
+            return Ok(());
         }
-        Ok(())
+        loop {
+            let gaps = self.points.windows(2).map(|pair| pair[1].t - pair[0].t);
+            let quickest_s = gaps.fold(f64::INFINITY, f64::min);
+            if quickest_s <= SLOWEST_READING_S {
+                return Ok(());
+            }
+            if self.points.len() > LINE_READINGS {
+                let too_slow = Cause::LineTooSlow { reading_ms: (1e3 * quickest_s).round() as u32 };
+                return Err(self.pace.computer_late().map_or(too_slow, |late| self.answered_late(late)));
+            }
+            self.poll(false)?;
+        }
     }
 
     /// Whether another silent poll as long as the one that began at `began_s` would leave a driven motor driven for too long after the last good reading. The
@@ -208,13 +219,26 @@ impl<L: Law> ExperimentGuard<'_, L> {
 
     /// Whether the counts are near 0 where no motor could have gone to since the poll before: the controller was reset, and its gains and its
     /// time-out are those of its EEPROM.
-    pub(super) fn counts_anew(&self, (before_s, counts): (f64, f64), point: &Point) -> bool {
+    /// When in an exchange the counts were read is open, so that the time between is the longest that there can have been. A motor whose time constant is
+    /// not known yet may still gather speed the way it is driven, past 0 too.
+    pub(super) fn counts_anew(
+        &self,
+        (before_s, counts): (f64, f64),
+        point: &Point,
+        counts_at: Exchange,
+    ) -> bool {
         let full_speed = self.monitor.full_speed;
-        let reach = RESET_REACH * full_speed * (point.t - before_s) + RESET_COUNTS;
+        let took_before_s = self.exchanges.last().map_or(0.0, |exchange| exchange.1);
+        let longest_s = counts_at.received.as_secs_f64() - self.epoch_s - before_s + 0.5 * took_before_s;
+        let reach = RESET_REACH * full_speed * longest_s + RESET_COUNTS;
+        let step = point.counts - counts;
+        let gathers_speed = self.monitor.tau_bounds_s.is_none()
+            && matches!(self.drives.last(), Some(Drive { input: Input::Duty(duty), .. }) if duty * step > 0.0);
         self.setup.encoder == EncoderClass::Quadrature
             && full_speed > 0.0
-            && (point.counts - counts).abs() > reach
-            && (self.last_raw as f64).abs() < reach.min(0.5 * (point.counts - counts).abs())
+            && step.abs() > reach
+            && !gathers_speed
+            && (self.last_raw as f64).abs() < reach.min(0.5 * step.abs())
     }
 
     /// Counts from the start of the run, beyond the wrap of the register or of the absolute encoder.

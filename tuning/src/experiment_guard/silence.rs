@@ -67,7 +67,7 @@ impl<L: Law> ExperimentGuard<'_, L> {
                     let before = self.points.last().map(|point| (point.t, point.counts));
                     let answer = self.answered_after(begun_s, sample.counts_at.received);
                     let point = self.point_of(&sample);
-                    if before.is_some_and(|before| self.counts_anew(before, &point)) {
+                    if before.is_some_and(|before| self.counts_anew(before, &point, sample.counts_at)) {
                         return Answer::Ended(Cause::WasReset);
                     }
                     return answer;

@@ -13,6 +13,8 @@ use std::time::Duration;
 
 /// How long a reply is waited for, s.
 const REPLY_TIMEOUT_S: f64 = 0.010;
+/// On a slow line it is so many times the usual latency: both ways, each up to 1.6 times that, and some more.
+const PATIENCE: f64 = 4.0;
 
 impl Bench for Controller {
     fn time(&self) -> Duration {
@@ -43,7 +45,7 @@ impl Carrier for SimulatedLine<Controller> {
             .map_err(|error| AxisError::Refused(error.to_string()))?;
         let bytes = request.encode(generation).map_err(|error| AxisError::Refused(error.to_string()))?;
         let sent = self.now;
-        let deadline = sent + Duration::from_secs_f64(REPLY_TIMEOUT_S);
+        let deadline = sent + Duration::from_secs_f64(REPLY_TIMEOUT_S.max(PATIENCE * self.usual_latency_s()));
         let dead = self.is_dead();
         let (lost_request, lost_reply) = (self.is_lost() || dead, self.is_lost() || dead);
         let (up, down) = (self.latency(), self.latency());

@@ -146,6 +146,36 @@ fn no_refusal_of_a_late_host_names_the_machine_of_a_motion_mind() {
     assert!(refused > 0, "a run in which nothing was late enough tests nothing");
 }
 
+/// A host that stands still while the line is timed, before the motor is driven: the line is not the slow one.
+#[test]
+fn a_host_that_stood_still_at_the_beginning_does_not_make_the_line_too_slow() {
+    let plant = specimen(31, PLANT_OF_MOMENT[0]);
+    let mut done = 0;
+    for (at_ms, long_ms) in (500..640).step_by(5).zip((120..4_000).step_by(140)) {
+        let mut axis = Unit::axis(&plant);
+        axis.carrier.stalls = vec![(Duration::from_millis(at_ms), Duration::from_millis(long_ms))];
+        axis.carrier.late_reads = Some((0.5, 0.02));
+        let report = tune(&mut axis, &request_of(&plant, Method::Velocity));
+        done += usize::from(!assert_blames_no_machine(&report, &format!("{long_ms} ms at {at_ms} ms")));
+    }
+    println!("{done} of 28 with gains");
+    assert!(done >= 24, "{done} of 28 with gains");
+}
+
+/// Each reading of the line takes too long by itself, or the computer takes too long for each.
+#[test]
+fn a_slow_line_is_told_from_a_computer_that_is_late_for_each_reading() {
+    let mut plant = specimen(31, PLANT_OF_MOMENT[0]);
+    let mut late = Unit::axis(&plant);
+    late.carrier.stalls =
+        (0..400).rev().map(|n| (Duration::from_millis(500 + 130 * n), Duration::from_millis(125))).collect();
+    let cause = tune(&mut late, &request_of(&plant, Method::Velocity)).causes.first().copied();
+    assert!(matches!(cause, Some(Cause::AnsweredLate { whose: Whose::Computer, .. })), "{cause:?}");
+    plant.link.latency_s = 0.025;
+    let cause = tune(&mut Unit::axis(&plant), &request_of(&plant, Method::Velocity)).causes.first().copied();
+    assert!(matches!(cause, Some(Cause::LineTooSlow { reading_ms: 101..250 })), "{cause:?}");
+}
+
 /// Moments at which the cable is pulled, or the line or the host stands still, ms after the unit was switched on.
 const MOMENTS_MS: [u64; 6] = [1_200, 1_700, 2_300, 3_100, 4_400, 6_900];
 /// The plants of these runs.

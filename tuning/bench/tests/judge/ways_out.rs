@@ -2,6 +2,7 @@
 
 use brushwork_mcp_axis::McpLaw;
 use brushwork_plant::world::WorldAction;
+use brushwork_tuning::axis::Axis as _;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::report::Verdict;
 use brushwork_tuning::tune::{Method, Request, tune};
@@ -84,4 +85,27 @@ fn each_way_out_ends_with_duty_0_three_times_the_old_gains_and_the_old_time_out(
         // Nothing is ever saved (94), and 32 and 33, which the default acceleration slows, are not used.
         assert!(!sent.iter().any(|request| matches!(request[1], 32 | 33 | 94)), "{strike:?}");
     }
+}
+
+/// The counts of the first drive up pass 0, where those of a controller that was reset would begin.
+#[test]
+fn a_motor_that_gathers_speed_past_count_0_is_no_controller_that_was_reset() {
+    let mut passed = 0;
+    for number in [0, 2, 11, 27] {
+        let plant = specimen(31, number);
+        for back_ms in (40..400).step_by(12) {
+            let mut axis = Unit::axis(&plant);
+            axis.drive_duty(-9_000).expect("the line is whole");
+            let until = axis.now() + Duration::from_millis(back_ms);
+            axis.wait_until(until).expect("nothing stops it");
+            axis.drive_duty(0).expect("the line is whole");
+            let mut request: Request<McpLaw> = request_of(&plant, Method::Velocity);
+            request.guard.time_limit_s = 3.0;
+            let report = tune(&mut axis, &request);
+            let case = format!("plant {number}, {back_ms} ms back");
+            assert_ne!(report.causes.first(), Some(&Cause::WasReset), "{case}");
+            passed += usize::from(report.probe.is_some());
+        }
+    }
+    assert_eq!(passed, 4 * 30, "runs that came to their first drive");
 }
