@@ -24,7 +24,7 @@ pub const CASCADE: Facts = Facts {
     delays_ticks: &DELAYS,
     rates_hz: &[],
     unmodelled_ticks: 0.5,
-    integral_times: (3.0, 0.8),
+    integral_times: (30.0, 0.65),
 };
 
 /// The state of the loop.

@@ -8,11 +8,15 @@ use crate::law::Law;
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::model::{Gains, Pid};
 use crate::oscillation::deviation;
+use crate::setpoint::Setpoint;
+use crate::ticks::TickLoop;
 
 /// Gains tried, as multiples of the proposed ones, up to the margin that is wanted.
 const FACTORS: [f64; 5] = [1.2, 1.4, 1.6, 1.8, 2.0];
 /// Shares of the gains tried where they oscillate as they are.
 const SHARES: [f64; 4] = [0.7, 0.5, 0.35, 0.25];
+/// A duty that is still so large a part of what its share of the gains makes of noise is noise: rms figures of some fourteen polls spread by a fifth.
+const NOISE_SHARE: f64 = 0.8;
 /// The sensitivity up to which a model counts as calm.
 const CALM_MS: f64 = 2.8;
 /// The most that is asked of a loop that oscillates.
@@ -33,6 +37,8 @@ const LEAST_POLLS: f64 = 14.0;
 /// The duty is too rough when it is so many times what was to be expected, and at least this.
 const TOO_ROUGH: f64 = 2.0;
 const LEAST_ROUGH: f64 = 0.012;
+/// What is left of a step may be so many times what the model leaves: it dies out as quickly to within a tenth or two.
+const RINGING: f64 = 1.3;
 
 /// The highest sensitivity of gains that are given without a warning (Astrom and Murray, "Feedback Systems", 2nd edition, section 10.3: 1.2 to 2 are reasonable).
 pub(crate) const MOST_MS: f64 = 1.8;
@@ -125,6 +131,11 @@ pub(crate) fn headroom<L: Law>(
     guard.speed(speed(-1.0))?;
     guard.poll_for(settle_s, true)?;
     let bound = |factor: f64| (TOO_ROUGH * predicted(factor)).max(LEAST_ROUGH);
+    // After a step, with what is still dying out.
+    let bound_after_step = |factor: f64| {
+        bound(factor)
+            .hypot(RINGING * ringing(task, &scaled(&inner, factor), (speed(-1.0), speed(1.0)), tried_s))
+    };
     let mut is_doubtful = false;
     let mut heard_above: Option<f64> = None;
     let mut side = 1.0;
@@ -144,17 +155,21 @@ pub(crate) fn headroom<L: Law>(
         }
         let measured = activity(guard, speed(side), tried_s)?;
         // Looked at twice: what oscillates goes on, unless it is so strong that it had better stop at once.
-        let again = measured > bound(factor) && measured <= AT_ONCE * bound(factor);
+        let after_step = bound_after_step(factor);
+        let again = measured > bound(factor) && measured <= AT_ONCE * after_step;
         let rough = if again { activity(guard, speed(side), tried_s)? } else { measured };
-        // Heard once and not again: backlash may hold it back at a steady speed. Gains that stay below are kept, with a warning.
-        if again {
+        // Heard once, not again, and not to be expected of a step: backlash may hold it back at a steady speed. Gains that stay below are kept, with a warning.
+        if again && (measured > after_step || rough > bound(factor)) {
             is_doubtful = true;
             heard_above.get_or_insert(quiet.max(1.0));
         }
         if rough > bound(factor) {
             let wanted = full_factor(task.goal.ms).min(most);
             if quiet == 0.0 {
-                quiet = lowered_until_quiet(guard, task, &inner, (speed, bound), tried_s)?;
+                match lowered_until_quiet(guard, task, &inner, (speed, bound), (tried_s, rough))? {
+                    Some(share) => quiet = share,
+                    None => (quiet, is_doubtful) = (wanted, true),
+                }
             }
             guard.duty(0.0)?;
             return Ok(Headroom { quiet, wanted, is_doubtful });
@@ -166,25 +181,40 @@ pub(crate) fn headroom<L: Law>(
     Ok(Headroom { quiet: heard_above.unwrap_or(quiet), wanted, is_doubtful })
 }
 
-/// The highest share of gains that oscillate as they are at which they no longer do.
+/// Deviation of the duty in the same part of a step of the model's loop: what is still dying out there is no oscillation.
+fn ringing<L: Law>(task: &Task<L>, gains: &Gains, (from, to): (f64, f64), tried_s: f64) -> f64 {
+    let mut twin = TickLoop::new(task.plant, task.law, task.lag, *gains, task.qpps).smooth();
+    twin.start_steady(from);
+    let tick_s = task.law.tick_s();
+    let ticks = (tried_s / tick_s) as usize;
+    let duties: Vec<(f64, f64)> =
+        (0..ticks).map(|n| (n as f64 * tick_s, twin.tick(Setpoint::Speed(to), 0.0))).collect();
+    deviation(&duties[((1.0 - HEARD) * ticks as f64) as usize..])
+}
+
+/// The highest share of gains that oscillate as they are at which they no longer do. `None` where no share is quiet and the duty falls with the gains
+/// alone: an oscillation would have died out, and what is left is a noise of the encoder that is louder than its rounding.
 fn lowered_until_quiet<L: Law>(
     guard: &mut ExperimentGuard<'_, L>,
     task: &Task<L>,
     inner: &Gains,
     (speed, bound): (impl Fn(f64) -> f64, impl Fn(f64) -> f64),
-    tried_s: f64,
-) -> Result<f64, Cause> {
-    let mut side = -1.0;
+    (tried_s, rough): (f64, f64),
+) -> Result<Option<f64>, Cause> {
+    let lowest = SHARES[SHARES.len() - 1];
+    let (mut side, mut heard) = (-1.0, rough);
     for share in SHARES {
         guard.write_gains(&task.law, &scaled(inner, share), task.qpps)?;
         // The first stay lets what went on before die out.
         activity(guard, speed(side), tried_s)?;
-        if activity(guard, speed(-side), tried_s)? <= bound(share) {
-            return Ok(share);
+        heard = activity(guard, speed(-side), tried_s)?;
+        if heard <= bound(share) {
+            return Ok(Some(share));
         }
         side = -side;
     }
-    Ok(SHARES[SHARES.len() - 1])
+    let falls_with_gains = heard >= NOISE_SHARE * lowest * rough;
+    Ok((!falls_with_gains).then_some(lowest))
 }
 
 /// A speed near this one at which each tick counts a half more than a whole number: the difference of two ticks is never the same, and

@@ -1,7 +1,7 @@
 //! Reports that are kept in the repository, each with its record and its gains: every build, whatever its profile, must find the same
 //! gains in the same record to the last bit.
 //!
-//! After a wanted change of the method: `UPDATE_REPORTS=1 cargo test -p brushwork-tests --test program tuning_replay::` records them anew.
+//! After a wanted change of the method: `rm tests/reports/*.json; UPDATE_REPORTS=1 cargo test -p brushwork-tests --test program tuning_replay::kept` records them anew.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
