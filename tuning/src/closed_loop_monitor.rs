@@ -138,9 +138,17 @@ impl ClosedLoopMonitor {
         self.step_duty = step_duty;
     }
 
-    /// Whether a load pulls that could keep the motor going without a current.
-    pub(crate) fn is_helped(&self) -> bool {
-        self.model.load_duty.abs() > HELPING * self.model.coulomb_duty
+    /// The model by which it monitors.
+    pub(crate) fn model(&self) -> &PlantModel {
+        &self.model
+    }
+
+    /// The least that friction takes off the speed of an open motor in a time; `None` where a load pulls that could keep it going.
+    pub(crate) fn least_fall(&self, seconds: f64) -> Option<f64> {
+        let model = &self.model;
+        let is_helped = model.load_duty.abs() > HELPING * model.coulomb_duty;
+        let share = (seconds / (TAU_SPREAD.1 * model.tau_s)).min(1.0);
+        (!is_helped).then_some(FRICTION.0 * model.gain_counts_per_s * model.coulomb_duty * share)
     }
 
     /// Whether the counts of every stretch lie within their bounds.

@@ -62,6 +62,13 @@ pub struct Fit {
     pub sd_ln_tau: f64,
     /// Standard deviation of the friction duty.
     pub sd_coulomb: f64,
+    /// Ramp of a duty that is given, over the one that was asked for; 1 where none was fitted.
+    #[serde(default = "as_asked")]
+    pub ramp: f64,
+}
+
+fn as_asked() -> f64 {
+    1.0
 }
 
 /// Fits an open-loop record. `gain` and `tau_s` are start values; `limit` is what current limit and stall current say of the drive limit,
@@ -185,6 +192,7 @@ impl<'a> Problem<'a> {
             sd_ln_gain: sd(0).hypot(UNMODELLED.0),
             sd_ln_tau: sd(1).hypot(UNMODELLED.1),
             sd_coulomb: (sd(2) * slope / 2e-4).hypot(UNMODELLED_COULOMB),
+            ramp: ramp(&self.q),
         }
     }
 

@@ -12,6 +12,7 @@ mod backlash;
 pub mod cascade;
 pub mod cause;
 mod closed_loop_monitor;
+mod current_silence;
 pub mod design;
 mod diagnosis;
 pub mod duty_limiter;

@@ -6,6 +6,7 @@
 
 use crate::cause::Cause;
 use crate::closed_loop_monitor::{Before, ClosedLoopMonitor};
+use crate::current_silence::{CurrentSilence, NO_CURRENT_AMPS, NOISES, OPEN_S};
 use crate::model::PlantModel;
 use crate::open_loop_record::DUTY_SLEW_PER_S;
 use crate::poll::Point;
@@ -32,8 +33,12 @@ const START_S: (f64, f64) = (0.13, 0.22);
 const STARTS: f64 = 1.5;
 const START_COUNTS: f64 = 2.0;
 const CLEARLY_HIGHER: f64 = 0.1;
-/// Without current for this long, the motor is open, s.
-const OPEN_S: f64 = 0.2;
+/// After a duty was given, its current has settled, s.
+const SETTLED_S: f64 = 0.3;
+/// Share of the friction that a duty has to be beyond the motor's voltage at the least for a current to be missed: the lower bound of the closed-loop monitor.
+const LEAST_PUSH: f64 = 0.5;
+/// A duty that lies below it by so much brakes with a current: beyond a gain that is 4 % off and half of a usual friction.
+const BRAKING: f64 = 0.05;
 /// A push that has begun draws its current after this, s.
 const PUSHED_S: f64 = 0.02;
 /// Duty readings of a loop lie this much beside the truth between two polls.
@@ -44,16 +49,11 @@ const LOOP_MARGIN: f64 = 0.04;
 const UNSEEN_SETPOINT_S: f64 = 0.07;
 /// Between which multiples of a time constant that was found the true one lies: a load behind a spring makes the motor alone quicker.
 const TAU_SPREAD: (f64, f64) = (0.3, 1.6);
-/// Share of the speed at full duty that a load may sway with while the motor is off.
+/// Share of the speed at full duty that a load may sway with while the motor is off, and below which cogs make a turning one uneven.
 const SWAYING: f64 = 0.08;
 /// From a poll to the command that it leads to, s; and the least share of a stopping distance that the motor's own slowing takes.
 const COMMAND_S: f64 = 0.012;
 const LEAST_TURN: f64 = 0.25;
-/// Highest reading that counts as no current of a sensor without noise, A: the wire's resolution. And how many standard deviations of the readings at
-/// rest it is of one with noise: of twenty readings of no current one in a hundred runs has one beyond it.
-pub(crate) const NOISES: f64 = 3.5;
-pub(crate) const NO_CURRENT_AMPS: f64 = 0.0151;
-
 /// The monitor of one motor.
 #[derive(Clone, Debug, Default)]
 pub struct MotorMonitor {
@@ -73,6 +73,8 @@ pub struct MotorMonitor {
     pub full_speed: f64,
     /// Whether a duty is in force at once, without a ramp.
     pub is_abrupt: bool,
+    /// Ramp of a duty that is given, over the one that was asked for, once it was fitted.
+    pub(crate) ramp: Option<f64>,
     /// Between which values the time constant lies, s; `None` as long as nothing is known.
     pub tau_bounds_s: Option<(f64, f64)>,
     /// How much more than usual the stamp of the last command may be off, s.
@@ -100,8 +102,7 @@ pub struct MotorMonitor {
     emf_gain: f64,
     /// What an identification has found, for the closed-loop monitor.
     closed_loop: Option<ClosedLoopMonitor>,
-    running_amps: Option<f64>,
-    open_since_s: Option<f64>,
+    current: CurrentSilence,
     recent: VecDeque<Point>,
     /// Duties read and when, oldest first.
     readings: VecDeque<(f64, f64)>,
@@ -122,7 +123,7 @@ impl MotorMonitor {
             // The ramp begins at the duty that the loop had.
             let last = self.duty_at(t);
             self.duties.clear();
-            self.duties.push_back((t - 2.0 / DUTY_SLEW_PER_S, last));
+            self.duties.push_back((t - 2.0 / self.slew_per_s(), last));
             self.in_loop = false;
             self.loop_until_s = t;
             self.changed_s = t;
@@ -182,7 +183,7 @@ impl MotorMonitor {
             return;
         }
         // The command comes late, then the duty takes its time to turn its sign and to come up.
-        let acts_s = COMMAND_S + 1.5 * duty / DUTY_SLEW_PER_S;
+        let acts_s = COMMAND_S + 1.5 * duty / self.slew_per_s();
         let found_s = (counts - acts_s * speed).max(LEAST_TURN * counts) / per_tau;
         self.turning_tau_s = Some(self.turning_tau_s.map_or(found_s, |known| 0.5 * (known + found_s)));
     }
@@ -200,10 +201,11 @@ impl MotorMonitor {
 
     /// A loop has the motor: its duty is what is read. It was commanded so first at `first_s`, and answered the try of `t`.
     pub fn release(&mut self, first_s: f64, t: f64) {
+        let ramp_s = 2.0 / self.slew_per_s();
         if let Some(closed_loop) = &mut self.closed_loop {
             let before = match self.duties.back() {
                 _ if self.in_loop => Before::ClosedLoop,
-                Some((off_s, 0.0)) => Before::Off(off_s + 2.0 / DUTY_SLEW_PER_S),
+                Some((off_s, 0.0)) => Before::Off(off_s + ramp_s),
                 _ => Before::Driven,
             };
             closed_loop.command(first_s, t, before);
@@ -314,7 +316,9 @@ impl MotorMonitor {
         let duty = self.duty_at(to.t);
         // No duty has no direction, whatever the sign of its nought.
         let direction = if duty == 0.0 { 0.0 } else { duty.signum() };
-        if self.keeps_its_speed(stretch, direction) {
+        // A motor that hardly turns is held up and let go by each of its cogs.
+        let crawls = self.tau_bounds_s.is_some() && speed_before.abs() < SWAYING * self.gain;
+        if !crawls && self.keeps_its_speed(stretch, direction) {
             let least = KEPT_SPEED * speed_before.abs() * span - MARGIN_COUNTS;
             if least > 0.0 && moved * direction < least {
                 return Err(Cause::Stalled);
@@ -451,23 +455,49 @@ impl MotorMonitor {
     }
 
     fn check_current(&mut self, point: &Point) -> Result<(), Cause> {
-        let driven = self.duty_at(point.t).abs() >= self.start_duty + 0.04;
-        if !driven {
-            self.open_since_s = None;
+        if self.duty_at(point.t).abs() < self.start_duty + 0.04 {
+            self.current.rest();
             return Ok(());
         }
         let Some(amps) = point.amps else { return Ok(()) };
-        if point.t - self.since_s > 0.3 && amps.abs() > 2.5 * self.no_current_amps() {
-            let lowest = self.running_amps.map_or(amps.abs(), |known| known.min(amps.abs()));
-            self.running_amps = Some(lowest);
-        }
-        if amps.abs() > self.no_current_amps() {
-            self.open_since_s = None;
-            return Ok(());
-        }
-        let since = *self.open_since_s.get_or_insert(point.t);
-        let open = self.draws() && point.t - since > OPEN_S && !self.goes_on(point.t - OPEN_S);
-        if open { Err(Cause::MotorOpened) } else { Ok(()) }
+        let is_settled = point.t - self.since_s > SETTLED_S;
+        self.current.see(point.t, amps.abs(), is_settled, self.no_current_amps());
+        let since_s = point.t - OPEN_S;
+        let is_open = self.draws()
+            && self.current.is_long(self.noise_amps)
+            && self.has_to_draw(since_s)
+            && !self.goes_on(since_s);
+        if is_open { Err(Cause::MotorOpened) } else { Ok(()) }
+    }
+
+    /// Whether the duty since then was so far from the voltage of the turning motor, beyond it or below, that a current had to flow, as far as that voltage is
+    /// known. A motor that slows down draws none for a while, and a loop whose duty jumps from tick to tick may be polled in step with its lower half.
+    fn has_to_draw(&self, since_s: f64) -> bool {
+        let known = self.closed_loop.as_ref().map(ClosedLoopMonitor::model);
+        // A duty so far from the voltage has no more than the current that counts as none.
+        let none = self.stall_amps.map_or(0.0, |stall| self.no_current_amps() / stall);
+        let (gain, driving, braking) = match known {
+            Some(model) => {
+                (model.gain_counts_per_s, none.max(LEAST_PUSH * model.coulomb_duty), none.max(BRAKING))
+            }
+            None if self.emf_gain > 0.0 => (self.emf_gain, none, none),
+            None => return true,
+        };
+        let polls: Vec<&Point> = self.recent.iter().filter(|point| point.t >= since_s - SPEED_S).collect();
+        let mut beyond: Vec<f64> = polls
+            .windows(2)
+            .filter(|pair| pair[1].amps.is_some())
+            .map(|pair| {
+                let speed = (pair[1].counts - pair[0].counts) / (pair[1].t - pair[0].t).max(1e-3);
+                let duty = pair[1]
+                    .duty
+                    .filter(|_| self.in_loop)
+                    .map_or_else(|| self.duty_at(pair[1].t), |read| read.1);
+                duty.abs() - speed * duty.signum() / gain
+            })
+            .collect();
+        beyond.sort_by(f64::total_cmp);
+        beyond.get(beyond.len() / 2).is_none_or(|beyond| *beyond > driving || *beyond < -braking)
     }
 
     /// Whether no current was read since a push began, of a motor that draws one.
@@ -484,9 +514,6 @@ impl MotorMonitor {
     /// Whether the motor has kept its speed since then, though its friction alone would have slowed it down.
     fn goes_on(&self, since_s: f64) -> bool {
         let Some(to) = self.recent.back() else { return false };
-        if self.closed_loop.as_ref().is_some_and(|closed_loop| !closed_loop.is_helped()) {
-            return false;
-        }
         let since = || self.recent.iter().filter(|point| point.t >= since_s - SPEED_S);
         let middle_s = 0.5 * (since_s + to.t);
         let (Some(from), Some(middle)) = (since().next(), since().find(|point| point.t >= middle_s)) else {
@@ -494,8 +521,13 @@ impl MotorMonitor {
         };
         let speed = |a: &Point, b: &Point| (b.counts - a.counts) / (b.t - a.t).max(1e-3);
         let (before, now) = (speed(from, middle), speed(middle, to));
-        let tau_s = 2.0 * self.rough_model(to.t).1;
-        let fall = 0.5 * self.gain * self.start_duty * (0.5 * (to.t - from.t) / tau_s).min(1.0);
+        let passed_s = 0.5 * (to.t - from.t);
+        let known = self.closed_loop.as_ref().and_then(|closed_loop| closed_loop.least_fall(passed_s));
+        let rough = || {
+            let tau_s = 2.0 * self.rough_model(to.t).1;
+            0.5 * self.gain * self.start_duty * (passed_s / tau_s).min(1.0)
+        };
+        let fall = known.unwrap_or_else(rough);
         let clear = 4.0 / (to.t - middle.t).max(1e-3);
         fall > clear && before * now > 0.0 && before.abs() - now.abs() < 0.6 * fall.min(before.abs())
     }
@@ -507,12 +539,16 @@ impl MotorMonitor {
 
     /// Whether a turning motor draws a current that can be distinguished from none.
     pub(crate) fn draws(&self) -> bool {
-        self.running_amps.is_some_and(|running| running > 2.5 * self.no_current_amps())
+        self.current.was_clear(self.no_current_amps())
             || self.stall_amps.is_some_and(|stall| stall * 0.015 > 2.0 * self.no_current_amps())
     }
 
+    fn slew_per_s(&self) -> f64 {
+        DUTY_SLEW_PER_S * self.ramp.unwrap_or(1.0)
+    }
+
     fn slewed(&self, duty: f64, goal: f64, seconds: f64) -> f64 {
-        let most = DUTY_SLEW_PER_S * seconds.max(0.0);
+        let most = self.slew_per_s() * seconds.max(0.0);
         if most.is_finite() && !self.is_abrupt { duty + (goal - duty).clamp(-most, most) } else { goal }
     }
 

@@ -156,6 +156,7 @@ mod tests {
             sd_ln_gain: 0.2 * sd,
             sd_ln_tau: sd,
             sd_coulomb: 0.1 * sd,
+            ramp: 1.0,
         };
         (task, fit, LagFit { lag, worst, interval_s, tau_scale: 1.0, chi_square })
     }

@@ -204,6 +204,7 @@ fn identify<L: Law>(
     };
     let model = found.fit.model;
     guard.monitor.know(&model);
+    guard.monitor.ramp = Some(found.fit.ramp);
     report.fit = Some(found.fit);
     report.qpps = Some(found.qpps);
     if model.load_duty.abs() > model.coulomb_duty + SURELY_HEAVY {

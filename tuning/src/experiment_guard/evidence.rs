@@ -2,8 +2,9 @@
 
 use super::{ExperimentGuard, retried, wait_for_rest};
 use crate::cause::{Cause, Whose};
+use crate::current_silence::NO_CURRENT_AMPS;
 use crate::law::Law;
-use crate::motor_monitor::{MotorMonitor, NO_CURRENT_AMPS};
+use crate::motor_monitor::MotorMonitor;
 use crate::pace::{Late, Pace};
 use crate::poll::{Drive, Input, Point};
 

@@ -118,6 +118,7 @@ pub(super) fn fit_moves<L: Law>(
         sd_ln_gain: deviations[0],
         sd_ln_tau: deviations[1],
         sd_coulomb: deviations[2],
+        ramp: 1.0,
     };
     Some(Found { fit, lag_s: (lag_s, deviations[5]), rate_hz: best.1, likely_hz, q: best.2.q })
 }

@@ -9,8 +9,8 @@ use std::time::Duration;
 
 /// Duty per second of the highest acceleration that is given with a duty.
 const SLEW_PER_S: f64 = 20.0;
-/// Standard deviation of a current, A.
-const CURRENT_NOISE_AMPS: f64 = 0.02;
+/// Standard deviation of a current of a usual sensor, A.
+pub const NOISE_AMPS: f64 = 0.02;
 
 /// The law of its loop.
 #[derive(Clone, Copy, Debug)]
@@ -106,6 +106,8 @@ pub struct Controller {
     latency_s: f64,
     loss: f64,
     draw: Draw,
+    /// Standard deviation of a current, A.
+    pub noise_amps: f64,
     /// When it is reset, if ever.
     pub reset_at: Option<Duration>,
     zero: f64,
@@ -137,6 +139,7 @@ impl Controller {
             latency_s: draw.log(0.0005, 0.003),
             loss: draw.between(0.0, 0.01),
             draw,
+            noise_amps: NOISE_AMPS,
             reset_at: None,
             zero: 0.0,
         }
@@ -231,7 +234,7 @@ impl Axis for Controller {
         let duty = |unit: &mut Self| (32_767.0 * unit.duty).round() as i16;
         let duty_raw = if want.duty { Some(self.ask(duty)?) } else { None };
         let amps = |unit: &mut Self| {
-            let noise = CURRENT_NOISE_AMPS * unit.draw.normal();
+            let noise = unit.noise_amps * unit.draw.normal();
             (100.0 * (unit.machine.amps.abs() + noise)).round() as i16
         };
         let current_raw = if want.current { Some(self.ask(amps)?.1) } else { None };

@@ -9,12 +9,20 @@ use brushwork_tuning::cause::Cause;
 use brushwork_tuning::experiment_guard::GuardOptions;
 use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::tune::{Request, tune};
-use controller::{Controller, LawOptions, sensitivity};
+use controller::{Controller, LawOptions, NOISE_AMPS, sensitivity};
 use machine::{Draw, Motor};
 use std::time::Duration;
 
-/// A motor and a law of a seed, and how often it is polled.
-fn drawn(seed: u64, number: usize) -> (Motor, LawOptions, f64, Draw) {
+/// A motor and a law of a seed, how often it is polled, and the noise of its currents.
+struct Drawn {
+    motor: Motor,
+    law: LawOptions,
+    poll_s: f64,
+    noise_amps: f64,
+    draw: Draw,
+}
+
+fn drawn(seed: u64, number: usize) -> Drawn {
     let mut draw = Draw::new(seed, number as u64);
     let motor = Motor::drawn(&mut draw, number);
     let law = LawOptions {
@@ -26,7 +34,7 @@ fn drawn(seed: u64, number: usize) -> (Motor, LawOptions, f64, Draw) {
         late_ticks: draw.one_of(&[0, 1]),
     };
     let poll_s = draw.log(0.010, 0.020);
-    (motor, law, poll_s, draw)
+    Drawn { motor, law, poll_s, noise_amps: NOISE_AMPS, draw }
 }
 
 /// A run, and what its gains really are.
@@ -39,10 +47,12 @@ struct Run {
 }
 
 impl Run {
-    fn of(seed: u64, number: usize, change: impl Fn(&mut LawOptions)) -> Self {
-        let (motor, mut law, poll_s, draw) = drawn(seed, number);
-        change(&mut law);
+    fn of(seed: u64, number: usize, change: impl Fn(&mut Drawn)) -> Self {
+        let mut all = drawn(seed, number);
+        change(&mut all);
+        let Drawn { motor, law, poll_s, noise_amps, draw } = all;
         let mut unit = Controller::new(motor, law, draw);
+        unit.noise_amps = noise_amps;
         let guard = GuardOptions { poll_s, ..GuardOptions::default() };
         let report = tune(&mut unit, &Request::<McpLaw> { guard, ..Request::default() });
         let ms = report.proposed.velocity.and_then(|registers| sensitivity(&motor, &law, &registers));
@@ -94,7 +104,8 @@ fn the_law_of_another_make_is_measured_whatever_it_is_and_its_loop_is_stable() {
 /// here, too: 222 has one of 3.9, and raising its gain passed since the rounding of the encoder was taken to be louder than any oscillation.
 #[test]
 fn what_is_tuned_without_a_warning_has_the_margin_that_it_should() {
-    let usual = |law: &mut LawOptions| {
+    let usual = |all: &mut Drawn| {
+        let law = &mut all.law;
         *law = LawOptions { rate_hz: 300.0, per_tick: true, feed_forward: 1.0, proportional: 1.0, ..*law };
     };
     let runs = (0..24).map(|number| Run::of(78, number, |_| {}));
@@ -112,13 +123,35 @@ fn what_is_tuned_without_a_warning_has_the_margin_that_it_should() {
     assert!(tuned >= 8, "a warning on every run says nothing: {tuned} without one");
 }
 
+/// Ten times the noise of the currents; three times the stiction, the cogs, the uneven edges; both. Before the current of a motor was held against the voltage that
+/// its speed makes, 2 of 100 motors without any of it were called open or stalled, and 7 of 100 with a noisy sensor. Seed 606 was not looked at before.
+#[test]
+fn no_healthy_motor_is_blamed_whatever_its_sensor_its_cogs_and_its_edges_are_like() {
+    for (noise, roughness) in [(10.0, 1.0), (1.0, 3.0), (5.0, 3.0)] {
+        for number in 0..12 {
+            let run = Run::of(606, number, |all| {
+                all.noise_amps *= noise;
+                all.motor.stiction *= roughness;
+                all.motor.cogging *= roughness;
+                all.motor.uneven = (all.motor.uneven * roughness).min(0.45);
+                all.motor.supply_ohms *= roughness.sqrt();
+                all.poll_s *= roughness.sqrt();
+            });
+            println!("{noise} {roughness} {}", run.line);
+            assert_ne!(run.report.verdict, Verdict::Refused, "{noise} {roughness} {}", run.line);
+            let promised = run.report.verdict != Verdict::Tuned || run.ms.is_some_and(|ms| ms <= 1.8);
+            assert!(promised, "{noise} {roughness} {}", run.line);
+        }
+    }
+}
+
 /// Wherever the run is, but for the probe at its beginning. Seed 79.
 #[test]
 fn a_reset_in_mid_run_is_named_and_nothing_is_called_tuned() {
     let (mut named, mut runs) = (0, 0);
     for number in 0..12 {
         for at_s in [2.7, 3.9, 5.3] {
-            let (motor, law, poll_s, draw) = drawn(79, number);
+            let Drawn { motor, law, poll_s, draw, .. } = drawn(79, number);
             let mut unit = Controller::new(motor, law, draw);
             unit.reset_at = Some(Duration::from_secs_f64(at_s));
             let guard = GuardOptions { poll_s, ..GuardOptions::default() };
@@ -170,7 +203,7 @@ impl Interval {
 fn intervals_of_another_make_hold_the_truth_and_are_not_absurdly_wide() {
     let mut all = ["gain, ln", "time constant, ln", "lag, ms"].map(Interval::new);
     for (seed, number) in [602, 603].into_iter().flat_map(|seed| (0..30).map(move |number| (seed, number))) {
-        let (motor, law, ..) = drawn(seed, number);
+        let Drawn { motor, law, .. } = drawn(seed, number);
         let run = Run::of(seed, number, |_| {});
         let (Some(fit), Some(lag)) = (run.report.fit, run.report.lag) else { continue };
         let about = |middle: f64, sd: f64| (middle.ln() - 2.0 * sd, middle.ln() + 2.0 * sd);

@@ -1,0 +1,67 @@
+//! Whether a driven motor has ceased to draw a current: readings in a row that are no more than the noise of the sensor, of a motor whose current was
+//! clearly more before.
+
+use std::collections::VecDeque;
+
+/// Highest reading that counts as no current of a sensor without noise, A: the wire's resolution. And how many standard deviations of the readings at
+/// rest it is of one with noise: of twenty readings of no current one in a hundred runs has one beyond it.
+pub(crate) const NOISES: f64 = 3.5;
+pub(crate) const NO_CURRENT_AMPS: f64 = 0.0151;
+/// Without current for this long, the motor is open, s.
+pub(crate) const OPEN_S: f64 = 0.2;
+/// How many times the highest reading of no current a motor has to draw for its silence to say anything. At 1.2 a motor that its load helps is called open, from 2.5 on
+/// three of 24 open leads under noise are not.
+const CLEARLY: f64 = 2.0;
+/// Share of a reading in the typical current: some ten readings, a third of a second, make it.
+const NEWEST: f64 = 0.1;
+/// The mean size of readings of no current over their root mean square is 0.8, with a deviation of 0.6 over the root of their number. Up to three of these, and the
+/// whole of the root mean square since that was measured too.
+const MEAN: f64 = 1.0;
+const THREE_DEVIATIONS: f64 = 1.8;
+
+/// The current of the motor while it is driven.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct CurrentSilence {
+    /// What it draws when its duty has settled, A; `None` before any was read.
+    typical_amps: Option<f64>,
+    /// Readings of no current in a row, oldest first: when, A, and whether the duty had settled. The first
+    /// is as old as makes an open motor.
+    silent: VecDeque<(f64, f64, bool)>,
+}
+
+impl CurrentSilence {
+    /// A reading of the driven motor. `most_amps` is the highest one that counts as no current.
+    pub(crate) fn see(&mut self, t: f64, amps: f64, is_settled: bool, most_amps: f64) {
+        self.silent.push_back((t, amps, is_settled));
+        while self.silent.get(1).is_some_and(|next| t - next.0 > OPEN_S) {
+            self.silent.pop_front();
+        }
+        if amps > most_amps {
+            // A silence that ended was none, so that it belongs to what the motor draws.
+            let settled = self.silent.drain(..).filter(|reading| reading.2);
+            for (_, amps, _) in settled {
+                let typical = self.typical_amps.get_or_insert(amps);
+                *typical += NEWEST * (amps - *typical);
+            }
+        }
+    }
+
+    /// The motor is not driven.
+    pub(crate) fn rest(&mut self) {
+        self.silent.clear();
+    }
+
+    /// Whether it drew clearly more than no current.
+    pub(crate) fn was_clear(&self, most_amps: f64) -> bool {
+        self.typical_amps.is_some_and(|typical| typical > CLEARLY * most_amps)
+    }
+
+    /// Whether all readings for long were no current, one by one and in their mean, given the root mean square of readings at rest.
+    pub(crate) fn is_long(&self, noise_amps: f64) -> bool {
+        let (Some(first), Some(last)) = (self.silent.front(), self.silent.back()) else { return false };
+        let n = self.silent.len() as f64;
+        let mean_amps = self.silent.iter().map(|reading| reading.1).sum::<f64>() / n;
+        let most_amps = NO_CURRENT_AMPS.max(noise_amps * (MEAN + THREE_DEVIATIONS / n.sqrt()));
+        last.0 - first.0 > OPEN_S && mean_amps <= most_amps
+    }
+}
