@@ -149,6 +149,7 @@ fn a_full_disk_and_a_folder_that_cannot_be_written_are_sentences_and_the_old_fil
     settings(&["export", name(&nowhere)]).ended_with(1).explains("Writing the profile");
     let left: Vec<_> =
         std::fs::read_dir(folder.path()).unwrap().flatten().map(|entry| entry.path()).collect();
+    assert!(left.contains(&file), "{left:?}");
     assert!(left.iter().all(|path| path.extension().is_none_or(|extension| extension != "tmp")), "{left:?}");
 }
 
