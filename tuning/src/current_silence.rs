@@ -3,15 +3,16 @@
 
 use std::collections::VecDeque;
 
-/// Highest reading that counts as no current of a sensor without noise, A: the wire's resolution. And how many standard deviations of the readings at
-/// rest it is of one with noise: of twenty readings of no current one in a hundred runs has one beyond it.
-pub(crate) const NOISES: f64 = 3.5;
+/// Highest reading that counts as no current of a sensor without noise, A: the wire's resolution.
 pub(crate) const NO_CURRENT_AMPS: f64 = 0.0151;
+/// How many standard deviations of the readings at rest it is of one with noise: of twenty readings of no current one in a hundred runs has one beyond it.
+pub(crate) const NOISES: f64 = 3.5;
 /// Without current for this long, the motor is open, s.
 pub(crate) const OPEN_S: f64 = 0.2;
-/// How many times the highest reading of no current a motor has to draw for its silence to say anything. At 1.2 a motor that its load helps is called open, from 2.5 on
-/// three of 24 open leads under noise are not.
+/// How many times the highest reading of no current a motor has to draw, typically, for its silence to raise an alarm: at 1.2 a motor that its load helps is called
+/// open. And at some time, for its silence to give an alarm of any kind its name.
 const CLEARLY: f64 = 2.0;
+const CLEARLY_ONCE: f64 = 2.5;
 /// Share of a reading in the typical current: some ten readings, a third of a second, make it.
 const NEWEST: f64 = 0.1;
 /// The mean size of readings of no current over their root mean square is 0.8, with a deviation of 0.6 over the root of their number. Up to three of these, and the
@@ -24,6 +25,8 @@ const THREE_DEVIATIONS: f64 = 1.8;
 pub(crate) struct CurrentSilence {
     /// What it draws when its duty has settled, A; `None` before any was read.
     typical_amps: Option<f64>,
+    /// Whether a reading ever was clearly more than no current.
+    pub(crate) has_been_clear: bool,
     /// Readings of no current in a row, oldest first: when, A, and whether the duty had settled. The first
     /// is as old as makes an open motor.
     silent: VecDeque<(f64, f64, bool)>,
@@ -32,6 +35,7 @@ pub(crate) struct CurrentSilence {
 impl CurrentSilence {
     /// A reading of the driven motor. `most_amps` is the highest one that counts as no current.
     pub(crate) fn see(&mut self, t: f64, amps: f64, is_settled: bool, most_amps: f64) {
+        self.has_been_clear |= amps > CLEARLY_ONCE * most_amps;
         self.silent.push_back((t, amps, is_settled));
         while self.silent.get(1).is_some_and(|next| t - next.0 > OPEN_S) {
             self.silent.pop_front();
@@ -51,8 +55,8 @@ impl CurrentSilence {
         self.silent.clear();
     }
 
-    /// Whether it drew clearly more than no current.
-    pub(crate) fn was_clear(&self, most_amps: f64) -> bool {
+    /// Whether it typically draws clearly more than no current.
+    pub(crate) fn is_clear(&self, most_amps: f64) -> bool {
         self.typical_amps.is_some_and(|typical| typical > CLEARLY * most_amps)
     }
 

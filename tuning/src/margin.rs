@@ -155,11 +155,11 @@ pub(crate) fn headroom<L: Law>(
         }
         let measured = activity(guard, speed(side), tried_s)?;
         // Looked at twice: what oscillates goes on, unless it is so strong that it had better stop at once.
-        let after_step = bound_after_step(factor);
-        let again = measured > bound(factor) && measured <= AT_ONCE * after_step;
+        let after_step = (measured > bound(factor)).then(|| bound_after_step(factor));
+        let again = after_step.is_some_and(|most| measured <= AT_ONCE * most);
         let rough = if again { activity(guard, speed(side), tried_s)? } else { measured };
         // Heard once, not again, and not to be expected of a step: backlash may hold it back at a steady speed. Gains that stay below are kept, with a warning.
-        if again && (measured > after_step || rough > bound(factor)) {
+        if again && (after_step.is_some_and(|most| measured > most) || rough > bound(factor)) {
             is_doubtful = true;
             heard_above.get_or_insert(quiet.max(1.0));
         }

@@ -54,6 +54,7 @@ const SWAYING: f64 = 0.08;
 /// From a poll to the command that it leads to, s; and the least share of a stopping distance that the motor's own slowing takes.
 const COMMAND_S: f64 = 0.012;
 const LEAST_TURN: f64 = 0.25;
+
 /// The monitor of one motor.
 #[derive(Clone, Debug, Default)]
 pub struct MotorMonitor {
@@ -463,7 +464,7 @@ impl MotorMonitor {
         let is_settled = point.t - self.since_s > SETTLED_S;
         self.current.see(point.t, amps.abs(), is_settled, self.no_current_amps());
         let since_s = point.t - OPEN_S;
-        let is_open = self.draws()
+        let is_open = self.draws_clearly()
             && self.current.is_long(self.noise_amps)
             && self.has_to_draw(since_s)
             && !self.goes_on(since_s);
@@ -508,7 +509,9 @@ impl MotorMonitor {
             .filter(|point| point.t > since_s + PUSHED_S)
             .filter_map(|point| point.amps)
             .peekable();
-        self.draws() && since.peek().is_some() && since.all(|amps| amps.abs() <= self.no_current_amps())
+        self.draws_clearly()
+            && since.peek().is_some()
+            && since.all(|amps| amps.abs() <= self.no_current_amps())
     }
 
     /// Whether the motor has kept its speed since then, though its friction alone would have slowed it down.
@@ -537,10 +540,19 @@ impl MotorMonitor {
         NO_CURRENT_AMPS.max(NOISES * self.noise_amps)
     }
 
-    /// Whether a turning motor draws a current that can be distinguished from none.
+    /// Whether a turning motor was seen to draw a current that can be distinguished from none: enough to name what an alarm is about, not to raise one.
     pub(crate) fn draws(&self) -> bool {
-        self.current.was_clear(self.no_current_amps())
-            || self.stall_amps.is_some_and(|stall| stall * 0.015 > 2.0 * self.no_current_amps())
+        self.current.has_been_clear || self.stalls_clearly()
+    }
+
+    /// Whether it typically draws one: its silence raises an alarm.
+    fn draws_clearly(&self) -> bool {
+        self.current.is_clear(self.no_current_amps()) || self.stalls_clearly()
+    }
+
+    /// Whether already the current of a little friction could be distinguished from none.
+    fn stalls_clearly(&self) -> bool {
+        self.stall_amps.is_some_and(|stall| stall * 0.015 > 2.0 * self.no_current_amps())
     }
 
     fn slew_per_s(&self) -> f64 {
