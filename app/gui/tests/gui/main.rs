@@ -46,6 +46,8 @@ mod traffic;
 mod tuning;
 mod tuning_by_hand;
 mod tuning_ends;
+mod tuning_refused;
+mod tuning_saved;
 mod velocity;
 mod widgets;
 mod window;

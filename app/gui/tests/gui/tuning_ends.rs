@@ -11,6 +11,7 @@ use brushwork_plant::presets;
 use brushwork_plant::world::WorldAction;
 use brushwork_values::Motor;
 use egui::{Key, Modifiers, ViewportCommand, ViewportEvent, ViewportId};
+use std::time::Duration;
 
 /// The user's time-out of the port and what the run makes of it, ms.
 const USERS_MS: u32 = 700;
@@ -123,7 +124,8 @@ fn at_each_stage(how: &str, end: impl Fn(&mut Bench), after: impl Fn(&mut Bench)
     for work in &WORKS {
         let stages = stages(work);
         assert!(stages.len() >= 3, "{}: {stages:?}", work.name);
-        for (stage, frames) in &stages {
+        let just_begun = ("just begun".to_owned(), 0);
+        for (stage, frames) in [just_begun].iter().chain(&stages) {
             let mut bench = (work.begin)();
             let before = fresh();
             bench.pass_ms(100 * frames);
@@ -172,6 +174,11 @@ fn the_button_of_the_run_ends_it_at_each_stage() {
 }
 
 #[test]
+fn stop_all_ends_it_at_each_stage() {
+    at_each_stage("Stop All", |bench| bench.press("Stop All"), |_| {});
+}
+
+#[test]
 fn leaving_the_screen_ends_it_at_each_stage() {
     at_each_stage("leaving", |bench| bench.press("Device Status"), |_| {});
 }
@@ -194,6 +201,26 @@ fn a_cable_pulled_at_each_stage_is_made_good_when_it_is_in_again() {
         bench.press("Connect");
         bench.pass_ms(5000);
     });
+}
+
+#[test]
+fn a_frozen_window_stops_the_motor_and_the_old_gains_are_put_back_when_it_lives_again() {
+    let mut bench = tune_velocity();
+    for _ in 0..60 {
+        if bench.real_duty(Motor::M1) > 0.9 {
+            break;
+        }
+        bench.pass_ms(100);
+    }
+    assert!(bench.real_duty(Motor::M1) > 0.9);
+    // 250 ms, and 50 ms that full duty takes to go to 0 at the highest deceleration.
+    bench.freeze(Duration::from_millis(320));
+    assert!(bench.both_stand(), "{}", bench.real_duty(Motor::M1));
+    bench.pass_ms(2500);
+    assert!(bench.both_stand() && !is_running(&mut bench));
+    assert_eq!(bench.model().front.link.arming, Arming::Disarmed);
+    assert_eq!(held(&bench), fresh());
+    assert!(bench.sees_part("The run was stopped: this computer answered late"));
 }
 
 #[test]

@@ -10,6 +10,7 @@ pub mod line;
 pub mod lockstep;
 pub mod one;
 pub mod palette;
+pub mod tuning;
 pub mod wait;
 pub mod words;
 
