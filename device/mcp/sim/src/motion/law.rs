@@ -17,6 +17,9 @@ pub struct ControlLaw {
     pub rate_hz: u32,
     /// Whether I and D gains count per tick or per second.
     pub gain_timing: GainTiming,
+    /// The same of D where it counts otherwise than I. Assumed: it does not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub derivative_timing: Option<GainTiming>,
     /// Wire value of a position gain of 1.0. Assumed: 1024 (all vendor libraries); the manual's MCL chapter has 2048.
     pub position_gain_scale: f64,
     /// Whether the speed setpoint over QPPS is added to the output. Assumed: yes (vendor forum, 2018: QPPS *is* the
@@ -143,6 +146,7 @@ impl Default for ControlLaw {
         ControlLaw {
             rate_hz: 300,
             gain_timing: GainTiming::PerTick,
+            derivative_timing: None,
             position_gain_scale: scale::POSITION_GAIN,
             feed_forward: true,
             velocity_estimate: VelocityEstimate::LastTick,
@@ -212,10 +216,20 @@ impl ControlLaw {
         Duration::new(number / rate, u32::try_from(fraction).unwrap_or(0))
     }
 
-    /// Seconds that one unit of the integral or derivative stands for: 1 per tick, or the tick length.
+    /// What each tick adds of the error to the integral: 1 per tick, or the tick length.
     #[must_use]
     pub fn gain_step(&self) -> f64 {
-        match self.gain_timing {
+        self.step_of(self.gain_timing)
+    }
+
+    /// What a difference of two ticks is divided by for the derivative, likewise.
+    #[must_use]
+    pub fn derivative_step(&self) -> f64 {
+        self.step_of(self.derivative_timing.unwrap_or(self.gain_timing))
+    }
+
+    fn step_of(&self, timing: GainTiming) -> f64 {
+        match timing {
             GainTiming::PerTick => 1.0,
             GainTiming::PerSecond => self.tick_s(),
         }

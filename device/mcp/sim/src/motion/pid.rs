@@ -127,7 +127,7 @@ impl Derivative {
             DerivativeOf::Error => error,
             DerivativeOf::Measurement => -measured,
         };
-        let slope = self.previous.map_or(0.0, |previous| (signal - previous) / law.gain_step());
+        let slope = self.previous.map_or(0.0, |previous| (signal - previous) / law.derivative_step());
         self.previous = Some(signal);
         if law.derivative_filter_s > 0.0 {
             let share = law.tick_s() / (law.derivative_filter_s + law.tick_s());
@@ -170,6 +170,16 @@ mod tests {
         assert!((output_of_second_tick(GainTiming::PerSecond, 1.0, 0.0) - 1.0).abs() < 1e-9);
         assert!((output_of_second_tick(GainTiming::PerTick, 0.0, 1.0) - 100.0).abs() < 1e-9);
         assert!((output_of_second_tick(GainTiming::PerSecond, 0.0, 0.1) - 3_000.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_derivative_may_count_otherwise_than_the_integral() {
+        let derivative_timing = Some(GainTiming::PerSecond);
+        let law = ControlLaw { derivative_timing, feed_forward: false, ..ControlLaw::default() };
+        let mut pid = VelocityPid::default();
+        pid.step(&ask(100.0, 0.0, 0.0, 1.0, 0.1), &law);
+        let duty = pid.step(&ask(200.0, 0.0, 0.0, 1.0, 0.1), &law);
+        assert!((duty * f64::from(QPPS) - 3_300.0).abs() < 1e-9);
     }
 
     #[test]

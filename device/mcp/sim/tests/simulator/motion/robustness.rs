@@ -127,6 +127,7 @@ impl Dice {
         ControlLaw {
             rate_hz: self.pick(&[0, 300, 625, 10_000]),
             gain_timing: self.pick(&[GainTiming::PerTick, GainTiming::PerSecond]),
+            derivative_timing: self.pick(&[None, Some(GainTiming::PerTick), Some(GainTiming::PerSecond)]),
             velocity_estimate: self.pick(&[
                 VelocityEstimate::LastTick,
                 VelocityEstimate::MovingAverage { ticks: 7 },
