@@ -26,8 +26,10 @@ pub struct Manner {
     pub tick_hz: f64,
     /// Whether I is summed by ticks or by seconds.
     pub sums_ticks: bool,
-    /// Whether the setpoint itself goes into the duty.
-    pub feeds_forward: bool,
+    /// Whether the position's D takes differences of ticks, or of seconds.
+    pub derives_ticks: bool,
+    /// How much of the setpoint itself goes into the duty.
+    pub feed_forward: f64,
     /// Whether currents are told; else they are 0.
     pub tells_current: bool,
     /// Whether the bits of the status are ever set.
@@ -50,7 +52,8 @@ impl Default for Manner {
             generation: 1,
             tick_hz: 300.0,
             sums_ticks: true,
-            feeds_forward: true,
+            derives_ticks: true,
+            feed_forward: 1.0,
             tells_current: true,
             tells_status: true,
             silent: Vec::new(),
@@ -240,7 +243,8 @@ impl OtherController {
                     error = 0.0;
                 }
                 let [d, p, ..] = self.position.map(|raw| f64::from(raw) / POSITION_SCALE);
-                let wanted = p * error + d * (error - self.before);
+                let parts = if self.manner.derives_ticks { 1.0 } else { self.manner.tick_hz };
+                let wanted = p * error + d * parts * (error - self.before);
                 self.before = error;
                 self.velocity_loop(wanted.clamp(-most, most), speed)
             }
@@ -253,8 +257,8 @@ impl OtherController {
         let error = goal - speed;
         let weight = if self.manner.sums_ticks { 1.0 } else { 1.0 / self.manner.tick_hz };
         let sum = self.sum + error * weight;
-        let fed = if self.manner.feeds_forward { goal } else { 0.0 };
-        let free = (fed + p / VELOCITY_SCALE * error + i / VELOCITY_SCALE * sum) / qpps;
+        let free =
+            (self.manner.feed_forward * goal + p / VELOCITY_SCALE * error + i / VELOCITY_SCALE * sum) / qpps;
         if free.abs() < 1.0 {
             self.sum = sum;
         }

@@ -6,14 +6,15 @@
 //! outside does not have that in it, and rules without it are useless (SIMC: good on 40 % of 42 foreign controllers with it, on 11 %
 //! without).
 
-use crate::design::{Design, Task, design_velocity};
+use crate::design::{Design, Task, deadzone, direct_gains};
 use crate::law::Law;
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::model::{Gains, Pid};
+use crate::proposal::design_for;
 use crate::report::Report;
 use crate::request::{Identification, Method};
 use crate::rules::Classic;
-use crate::ticks::velocity_test;
+use crate::ticks::{position_test_and_end, velocity_test};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -69,13 +70,15 @@ impl Rule {
         }
     }
 
-    /// The rule whose gains a method proposes.
+    /// The rule whose gains an identification proposes for a method.
     #[must_use]
-    pub fn of_method(identification: Identification) -> Self {
-        match identification {
-            Identification::Fit => Self::Search,
-            Identification::Step => Self::Simc,
-            Identification::Relay | Identification::Controller => Self::TyreusLuyben,
+    pub fn of(identification: Identification, method: Method) -> Self {
+        match (identification, method) {
+            (Identification::Fit, _) => Self::Search,
+            (Identification::Step, _) => Self::Simc,
+            // Tyreus and Luyben have no rule without an integral.
+            (Identification::Relay | Identification::Controller, Method::Pd) => Self::ZieglerNichols,
+            (Identification::Relay | Identification::Controller, _) => Self::TyreusLuyben,
         }
     }
 
@@ -98,6 +101,44 @@ impl Rule {
             Self::CohenCoon => (t / (k * d) * (0.9 + r / 12.0), d * (30.0 + 3.0 * r) / (9.0 + 20.0 * r)),
         })
     }
+
+    /// P over QPPS, the integral time and the derivative time, s, of a position loop that acts on the duty directly: `K / (s (tau s + 1))` with the dead
+    /// time. `None` where the rule has no formula for such a process.
+    fn pid(self, seen: &Classic, has_integral: bool) -> Option<(f64, f64, f64)> {
+        let (k, t, d) = (seen.gain_counts_per_s, seen.tau_s, seen.dead_time_s);
+        let (ku, tu) = seen.position_ultimate(0.0);
+        let half = 0.5 * t;
+        Some(match (self, has_integral) {
+            // Skogestad 2003, table 1: the derivative cancels the time constant.
+            (Self::Simc, false) => (1.0 / (k * 2.0 * d), f64::INFINITY, t),
+            (Self::Simc, true) => of_series(1.0 / (k * 2.0 * d), 8.0 * d, t),
+            // Chien and Fruehauf 1990, the closed time constant half the open one.
+            (Self::Lambda, false) => (1.0 / (k * (half + d)), f64::INFINITY, t),
+            (Self::Lambda, true) => of_series((t + d) / (k * (half + d).powi(2)), t + d, t),
+            // For an integrating process with the dead time and the time constant together.
+            (Self::Amigo, true) => (0.45 / (k * (d + t)), 8.0 * (d + t), 0.5 * (d + t)),
+            (Self::TyreusLuyben, true) => (ku / 2.2, 2.2 * tu, tu / 6.3),
+            (Self::ZieglerNichols, true) => (0.6 * ku, 0.5 * tu, tu / 8.0),
+            (Self::ZieglerNichols, false) => (0.8 * ku, f64::INFINITY, tu / 8.0),
+            (Self::Amigo | Self::TyreusLuyben, false) | (Self::Search | Self::CohenCoon, _) => return None,
+        })
+    }
+
+    /// P of a position loop over the velocity loop of this rule, 1/s: Skogestad's for an integrator behind the closed loop.
+    fn outer(self, seen: &Classic) -> f64 {
+        let behind_s = match self {
+            Self::Lambda => 0.5 * seen.tau_s + seen.dead_time_s,
+            Self::TyreusLuyben | Self::ZieglerNichols => seen.ultimate_period_s,
+            Self::Search | Self::Simc | Self::Amigo | Self::CohenCoon => seen.dead_time_s,
+        };
+        1.0 / (4.0 * behind_s)
+    }
+}
+
+/// A series of P, integral time and derivative time as a sum of them.
+fn of_series(p: f64, integral_s: f64, derivative_s: f64) -> (f64, f64, f64) {
+    let both_s = integral_s + derivative_s;
+    (p * both_s / integral_s, both_s, integral_s * derivative_s / both_s)
 }
 
 /// What a rule comes to on a run's model.
@@ -129,7 +170,15 @@ pub fn seen<L: Law>(report: &Report<L>, task: &Task<L>) -> Classic {
             let dead_s = (relay.lag_deg.0.to_radians() - (omega * tau_s).atan()) / omega;
             (relay.static_gain.0, tau_s.max(task.law.tick_s()), dead_s)
         }
-        (None, None) => (task.plant.gain_counts_per_s, task.plant.tau_s, 0.0),
+        (None, None) => {
+            let (gain, tau_s) = (task.plant.gain_counts_per_s, task.plant.tau_s);
+            let by_relay = report.position_relay.map(|relay| {
+                let omega = TAU / relay.period_s.0;
+                ((relay.lag_deg.0 - 90.0).to_radians() - (omega * tau_s).atan()) / omega
+            });
+            let by_step = report.window.filter(|window| window.step_duties.is_some()).and(report.fit);
+            (gain, tau_s, by_relay.or(by_step.map(|fit| fit.offset_s)).unwrap_or(0.0))
+        }
     };
     let seen = Classic::of_model(gain, tau_s, dead_s.max(lag_s));
     // The controller's own test has found the ultimate point itself.
@@ -140,24 +189,27 @@ pub fn seen<L: Law>(report: &Report<L>, task: &Task<L>) -> Classic {
     })
 }
 
-/// All rules on a run of the velocity loop; none on other runs, and on those without a model.
+/// All rules on a run; none on those without a model, and on those of an axis that takes no duty.
 #[must_use]
 pub fn alternatives<L: Law>(report: &Report<L>) -> Vec<Alternative<L>> {
     let (Some(task), Some(before)) = (report.task, report.before) else { return Vec::new() };
-    if report.request.method != Method::Velocity {
+    if !task.law.facts().has_duty {
         return Vec::new();
     }
     let seen = seen(report, &task);
+    let method = report.request.method;
+    let travel = report.free_limits.or(report.request.guard.travel).filter(|_| method != Method::Velocity);
     let of = |rule: Rule| {
-        let design = match gains_of(rule, report, &task, &seen) {
-            Some(gains) => promised(&task, gains),
-            None => design_velocity(&task)?,
+        let design = if rule == Rule::Search {
+            design_for(method, &task)?
+        } else {
+            promised(&task, gains_of(rule, report, &task, &seen)?)
         };
         Some(Alternative {
             rule,
             design,
             is_stable: is_stable(&task, &design.gains),
-            registers: task.law.registers(&before.held, &design.gains, task.qpps, None),
+            registers: task.law.registers(&before.held, &design.gains, task.qpps, travel),
         })
     };
     Rule::ALL.into_iter().filter_map(of).collect()
@@ -165,7 +217,7 @@ pub fn alternatives<L: Law>(report: &Report<L>) -> Vec<Alternative<L>> {
 
 /// What the rule of a method proposes, lowered where it would leave too little margin or make too much noise, and whether it was.
 pub(crate) fn proposed<L: Law>(report: &Report<L>, task: &Task<L>) -> Option<(Design, bool)> {
-    let rule = Rule::of_method(report.request.identification);
+    let rule = Rule::of(report.request.identification, report.request.method);
     let mut gains = gains_of(rule, report, task, &seen(report, task))?;
     for lowered in 0..MOST_LOWERED {
         let design = promised(task, gains);
@@ -173,16 +225,34 @@ pub(crate) fn proposed<L: Law>(report: &Report<L>, task: &Task<L>) -> Option<(De
         if is_fit && is_stable(task, &gains) {
             return Some((design, lowered > 0));
         }
-        gains.velocity.p *= LOWERED;
-        gains.velocity.i *= LOWERED;
+        let softer = |pid: Pid| Pid { p: LOWERED * pid.p, i: LOWERED * pid.i, d: LOWERED * pid.d };
+        let position = gains.position.map(softer);
+        // A bound of the sum is one of what the integral gives.
+        let max_integral = if position.is_some() { gains.max_integral / LOWERED } else { gains.max_integral };
+        gains = Gains { velocity: softer(gains.velocity), position, max_integral, ..gains };
     }
     None
 }
 
 fn gains_of<L: Law>(rule: Rule, report: &Report<L>, task: &Task<L>, seen: &Classic) -> Option<Gains> {
-    let (gain, time_s) = rule.pi(seen, report.relay.is_some() || report.own_test.is_some())?;
+    let by_relay = report.relay.is_some() || report.position_relay.is_some() || report.own_test.is_some();
+    let inner = || {
+        let (gain, time_s) = rule.pi(seen, by_relay)?;
+        let p = gain * task.qpps;
+        Some(Gains { velocity: Pid { p, i: p / time_s, d: 0.0 }, ..Gains::default() })
+    };
+    let has_integral = match report.request.method {
+        Method::Velocity => return inner(),
+        Method::Piv => {
+            let position = Some(Pid { p: rule.outer(seen), i: 0.0, d: 0.0 });
+            return Some(Gains { position, deadzone_counts: deadzone(task), ..inner()? });
+        }
+        Method::Pd => false,
+        Method::Pid => true,
+    };
+    let (gain, integral_s, derivative_s) = rule.pid(seen, has_integral)?;
     let p = gain * task.qpps;
-    Some(Gains { velocity: Pid { p, i: p / time_s, d: 0.0 }, ..Gains::default() })
+    Some(direct_gains(task, Pid { p, i: p / integral_s, d: p * derivative_s }))
 }
 
 fn promised<L: Law>(task: &Task<L>, gains: Gains) -> Design {
@@ -190,7 +260,10 @@ fn promised<L: Law>(task: &Task<L>, gains: Gains) -> Design {
     let margins = on_model(task, task.lag).margins(&gains, task.qpps);
     Design {
         gains,
-        score: velocity_test(&task.plant, &task.law, task.lag, &gains, task.qpps),
+        score: match gains.position {
+            None => velocity_test(&task.plant, &task.law, task.lag, &gains, task.qpps),
+            Some(_) => position_test_and_end(&task.plant, &task.law, task.lag, &gains, task.qpps).0,
+        },
         ms: margins.ms,
         noise_duty: margins.noise_duty * task.noise_factor,
     }
@@ -226,5 +299,31 @@ mod tests {
         close(Rule::TyreusLuyben, true, 16.34 / 3.2, 2.2 * TAU / 163.1);
         close(Rule::ZieglerNichols, true, 0.45 * 16.34, TAU / 163.1 / 1.2);
         assert_eq!(Rule::Search.pi(&seen, false), None);
+    }
+
+    #[test]
+    fn each_rule_for_positions_gives_what_its_paper_says_for_a_known_motor() {
+        let seen = Classic::of_model(10_000.0, 0.1, 0.01);
+        let close = |rule: Rule, has_integral: bool, wanted: (f64, f64, f64)| {
+            let found = rule.pid(&seen, has_integral).expect("it has a formula");
+            let pairs = [(found.0 * 10_000.0, wanted.0), (found.1, wanted.1), (found.2, wanted.2)];
+            for (found, wanted) in pairs {
+                let is_close = found == wanted || (found / wanted - 1.0).abs() < 1e-3;
+                assert!(is_close, "{rule:?}: {found} is not {wanted}");
+            }
+        };
+        close(Rule::Simc, false, (50.0, f64::INFINITY, 0.1));
+        // In series 50, 80 ms and 100 ms.
+        close(Rule::Simc, true, (112.5, 0.18, 0.008 / 0.18));
+        close(Rule::Lambda, false, (1.0 / 0.06, f64::INFINITY, 0.1));
+        close(Rule::Amigo, true, (0.45 / 0.11, 0.88, 0.055));
+        // The phase of -180 degrees is at atan(w 0.1) + w 0.01 = pi / 2: w = 31.1 rad/s, where the gain is 1 / 101.7.
+        close(Rule::ZieglerNichols, false, (0.8 * 101.7, f64::INFINITY, TAU / 31.11 / 8.0));
+        close(Rule::TyreusLuyben, true, (101.7 / 2.2, 2.2 * TAU / 31.11, TAU / 31.11 / 6.3));
+        for (rule, has_integral) in
+            [(Rule::CohenCoon, true), (Rule::TyreusLuyben, false), (Rule::Amigo, false)]
+        {
+            assert_eq!(rule.pid(&seen, has_integral), None, "{rule:?}");
+        }
     }
 }

@@ -182,7 +182,9 @@ causes! {
     LoopOff "The controller's loop was left switched off (DISABLEPID in FUNCTION, or MF, in RAM), since with this it could drive the motor \
         away. When the fault is remedied, arm or drive again: that switches the loop on where the motor stands.";
     /// A step or a relay was asked for where there is none.
-    OnlyFree "Step, relay and the controller's own test are for the velocity loop of a motor that may turn freely. Choose the method fit.";
+    OnlyFree "The controller's own test is for the velocity loop of a motor that may turn freely. Choose fit, step or relay.";
+    /// Its loop always has the motor.
+    NoOpenLoop "This controller takes no duty, so that neither a step nor a relay can be made. Choose the method fit.";
     /// Between the starting duty and the highest there is no room.
     NoRoomForStep "Between the duty at which the motor starts and the highest that is allowed there is no room for a step. Allow more \
         duty, or choose the method fit.";

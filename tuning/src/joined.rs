@@ -12,6 +12,7 @@ use crate::law::{Ending, Facts, Law, Seen, Stamps};
 use crate::law_probe::LawProbe;
 use crate::open_loop_record::Actuation;
 use crate::registers::{FeedForward, RegisterField, RegisterTable};
+use crate::request::Method;
 use crate::setpoint::Setpoint;
 use crate::setup::{LoopAxis, Setup};
 use serde::de::DeserializeOwned;
@@ -366,9 +367,9 @@ impl<A: LeadingLaw, P: LawPart> LawProbe for Both<A, P> {
         held: &Self::Held,
         write: &dyn Fn(Self::Write) -> J::Write,
         start_duty: f64,
-        is_position: bool,
+        method: Method,
     ) -> Result<Option<Self::Findings>, Cause> {
-        A::probe(guard, &held.first, &|one| write(Either::First(one)), start_duty, is_position)
+        A::probe(guard, &held.first, &|one| write(Either::First(one)), start_duty, method)
     }
 }
 

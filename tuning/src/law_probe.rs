@@ -4,18 +4,19 @@ use crate::cause::Cause;
 use crate::experiment::{Probe, run_probe};
 use crate::experiment_guard::{ExperimentGuard, GuardOptions};
 use crate::law::Law;
+use crate::request::Method;
 use crate::setup::LoopAxis;
 
 /// A law that a run can find out, where [`Facts::can_be_probed`](crate::law::Facts) says so.
 pub trait LawProbe: Law {
-    /// Reads the law off a motor that stands; `start_duty` is the duty that moves it, `write` makes writes of this law those of the run.
-    /// `None` where the controller reports no duty.
+    /// Reads off a motor that stands what of the law gains of `method` need; `start_duty` is the duty that moves it, `write` makes writes of this law
+    /// those of the run. `None` where the controller reports no duty.
     fn probe<J: Law>(
         _guard: &mut ExperimentGuard<'_, J>,
         _held: &Self::Held,
         _write: &dyn Fn(Self::Write) -> J::Write,
         _start_duty: f64,
-        _is_position: bool,
+        _method: Method,
     ) -> Result<Option<Self::Findings>, Cause> {
         Ok(None)
     }
@@ -69,7 +70,7 @@ fn look<L: LawProbe>(guard: &mut ExperimentGuard<'_, L>) -> Result<LawFound<L>, 
     guard.progress("Finding out the law of the loop");
     let held = guard.setup.held;
     let findings = match guard.facts.can_be_probed {
-        true => L::probe(guard, &held, &|write| write, probe.start_duty, true)?,
+        true => L::probe(guard, &held, &|write| write, probe.start_duty, Method::Pd)?,
         false => None,
     };
     Ok(LawFound { probe, findings, speed_step })

@@ -1,13 +1,14 @@
-//! How far the gain of a velocity loop can be raised on the machine before the loop gets rough: its gain margin, asked of the machine
-//! itself. A springy shaft oscillates faster than polls can see and no model knows of it; the duty that is read back shows it anyhow.
+//! How far the gain of a loop can be raised on the machine before the loop gets rough: its gain margin, asked of the machine itself. A springy shaft oscillates faster than polls can see and no model knows of it; the duty that is read back shows it anyhow.
 
 use crate::cause::Cause;
 use crate::design::Task;
+use crate::experiment::rest;
 use crate::experiment_guard::ExperimentGuard;
 use crate::law::Law;
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::model::{Gains, Pid};
 use crate::oscillation::deviation;
+use crate::request::Excitation;
 use crate::setpoint::Setpoint;
 use crate::ticks::TickLoop;
 
@@ -40,6 +41,14 @@ const LEAST_ROUGH: f64 = 0.012;
 /// What is left of a step may be so many times what the model leaves: it dies out as quickly to within a tenth or two.
 const RINGING: f64 = 1.3;
 
+/// Share of a travel that a stroke covers.
+pub(crate) const INSIDE_SHARE: f64 = 0.35;
+/// How far away the target of a loop on the position is then, as a share of it.
+const INSIDE_FAR: f64 = 0.45;
+/// Counts in a tick from which on a derivative alone gives a duty: with fewer it gives pulses, and polls see some of them.
+const LEAST_OF_DERIVATIVE: f64 = 2.0;
+/// How far away the target of a loop on the position is, s of full speed.
+const FAR_S: f64 = 4.0;
 /// The highest sensitivity of gains that are given without a warning (Astrom and Murray, "Feedback Systems", 2nd edition, section 10.3: 1.2 to 2 are reasonable).
 pub(crate) const MOST_MS: f64 = 1.8;
 
@@ -92,81 +101,207 @@ fn velocity_loop_of(gains: &Gains) -> Gains {
     Gains { velocity, ..Gains::default() }
 }
 
-/// The highest multiple of gains that the model itself stays calm under.
-fn highest_calm(plant: &LoopPlant, inner: &Gains, qpps: f64) -> f64 {
-    let is_calm = |factor: &f64| {
-        let gains = scaled(inner, *factor);
-        plant.spectral_radius(&gains, qpps) < 1.0 && plant.margins(&gains, qpps).ms < CALM_MS
-    };
-    FACTORS.into_iter().chain([MOST_FACTOR]).take_while(is_calm).fold(1.0, f64::max)
-}
-
 /// The velocity gains times a factor.
 pub(crate) fn scaled(gains: &Gains, factor: f64) -> Gains {
     let v = gains.velocity;
     Gains { velocity: Pid { p: factor * v.p, i: factor * v.i, d: factor * v.d }, ..*gains }
 }
 
-/// Raises the velocity gains step by step at a steady speed, as far as the duty stays quiet. The motor is braked at the end; the raised
-/// gains stand in the registers then.
+/// A loop whose gains are raised: how it is written, and how the motor is kept turning under it.
+struct Raised<'t, L: Law> {
+    task: &'t Task<L>,
+    /// The gains that are raised.
+    inner: Gains,
+    /// Of a loop that acts on the duty directly: its derivative alone, under a proportional part to a target so far away that it is a duty.
+    is_direct: bool,
+    /// Setpoints of the steps, counts/s.
+    speeds: (f64, f64),
+    /// In a travel it goes to and fro about this count.
+    about: Option<f64>,
+    /// How far away the target is, counts.
+    far: f64,
+    side: f64,
+    /// How long each stay is, s.
+    tried_s: f64,
+}
+
+impl<'t, L: Law> Raised<'t, L> {
+    fn new(
+        guard: &mut ExperimentGuard<'_, L>,
+        task: &'t Task<L>,
+        gains: &Gains,
+        (excitation, tried_s): (Excitation, f64),
+        plant: &LoopPlant,
+    ) -> Result<Self, Cause> {
+        let is_free = excitation == Excitation::Free;
+        let is_fine = SPEED * task.qpps * task.law.tick_s() > LEAST_OF_DERIVATIVE;
+        let is_direct = gains.velocity == Pid::default() && is_fine && (!is_free || has_far(guard, task));
+        if !is_free || is_direct {
+            guard.duty(0.0)?;
+            rest(guard, task.plant.tau_s, task.qpps)?;
+        }
+        let inner = if is_direct { *gains } else { velocity_loop_of(gains) };
+        let middle = between_counts(SPEED * task.qpps, task.law.tick_s());
+        let far = FAR_S * task.qpps;
+        let free =
+            Self { task, inner, is_direct, speeds: (middle, middle), about: None, far, side: -1.0, tried_s };
+        let tick_s = task.law.tick_s();
+        Ok(match excitation {
+            Excitation::Free => {
+                let wanted = wanted_factor(task.goal.ms).min(free.highest_calm(plant));
+                let gain = inner.velocity.p.max(inner.position.map_or(0.0, |position| position.d));
+                let step = (STEP_DUTY / (wanted * gain).max(1e-6)).clamp(STEP.0, STEP.1);
+                let speed = |side: f64| between_counts((SPEED + side * step) * task.qpps, tick_s);
+                Self { speeds: (speed(-1.0), speed(1.0)), ..free }
+            }
+            Excitation::Window(width) => {
+                let room = guard.room_counts().unwrap_or(width).min(width);
+                let speed = between_counts((INSIDE_SHARE * room / tried_s).min(SPEED * task.qpps), tick_s);
+                let about = guard.points.last().map(|point| point.counts);
+                Self { speeds: (-speed, speed), about, far: INSIDE_FAR * room, ..free }
+            }
+        })
+    }
+
+    /// The highest multiple that the model itself stays calm under.
+    fn highest_calm(&self, plant: &LoopPlant) -> f64 {
+        let is_calm = |factor: &f64| {
+            let gains = self.gains(*factor);
+            plant.spectral_radius(&gains, self.task.qpps) < 1.0
+                && plant.margins(&gains, self.task.qpps).ms < CALM_MS
+        };
+        FACTORS.into_iter().chain([MOST_FACTOR]).take_while(is_calm).fold(1.0, f64::max)
+    }
+
+    /// The gains of a multiple.
+    fn gains(&self, factor: f64) -> Gains {
+        let Some(position) = self.inner.position.filter(|_| self.is_direct) else {
+            return scaled(&self.inner, factor);
+        };
+        let d = factor * position.d;
+        let plant = &self.task.plant;
+        let speed = self.mean_speed();
+        // To and fro a load helps as often as it does not.
+        let load = if self.about.is_some() { 0.0 } else { plant.load_duty };
+        let eaten = plant.coulomb_duty + load;
+        let pull = (speed / plant.gain_counts_per_s + eaten) * self.task.qpps + d * speed;
+        Gains { position: Some(Pid { p: pull / self.far, i: 0.0, d }), ..Gains::default() }
+    }
+
+    /// The speed of its steps, counts/s.
+    fn mean_speed(&self) -> f64 {
+        if self.about.is_some() { self.speeds.1 } else { 0.5 * (self.speeds.0 + self.speeds.1) }
+    }
+
+    fn write(&self, guard: &mut ExperimentGuard<'_, L>, factor: f64) -> Result<(), Cause> {
+        let gains = self.gains(factor);
+        if !self.is_direct {
+            return guard.write_gains(&self.task.law, &gains, self.task.qpps).map(|_| ());
+        }
+        let travel = guard.proposed_travel(self.task.qpps);
+        let registers = self.task.law.registers(&guard.setup.held, &gains, self.task.qpps, travel);
+        guard.write_all(&registers, true)?;
+        // What one count in a tick does to the duty.
+        let d = gains.position.map_or(0.0, |position| position.d);
+        guard.monitor.hold(d / self.task.law.tick_s() / self.task.qpps);
+        Ok(())
+    }
+
+    /// Has the motor turn at the speed of a side.
+    fn go(&self, guard: &mut ExperimentGuard<'_, L>, factor: f64) -> Result<(), Cause> {
+        let speed = if self.side > 0.0 { self.speeds.1 } else { self.speeds.0 };
+        if !self.is_direct {
+            return guard.speed(speed);
+        }
+        let bound = self.task.qpps as u32;
+        if let Some(about) = self.about {
+            return guard.position(about + self.side * self.far, bound);
+        }
+        let gains = self.gains(factor).position.unwrap_or_default();
+        let stiffness = self.task.qpps / self.task.plant.gain_counts_per_s + gains.d;
+        let more = (speed - self.mean_speed()) * stiffness / gains.p.max(f64::MIN_POSITIVE);
+        let here = guard.points.last().map_or(0.0, |point| point.counts);
+        guard.position(here + self.far + more, bound)
+    }
+
+    /// Deviation of the duty in the last part of a stay: on the other side of a step, or once more on the same. In a travel it is always the other way.
+    fn activity(
+        &mut self,
+        guard: &mut ExperimentGuard<'_, L>,
+        factor: f64,
+        is_step: bool,
+    ) -> Result<f64, Cause> {
+        if is_step || self.about.is_some() {
+            self.side = -self.side;
+        }
+        self.go(guard, factor)?;
+        let from_s = guard.now_s() + (1.0 - HEARD) * self.tried_s;
+        guard.poll_for(self.tried_s, true)?;
+        let duties: Vec<(f64, f64)> =
+            guard.points.iter().filter_map(|point| point.duty).filter(|duty| duty.0 >= from_s).collect();
+        Ok(deviation(&duties))
+    }
+}
+
+/// Raises the gains step by step while the motor turns, as far as the duty stays quiet. The motor is braked at the end; the raised gains stand in the
+/// registers then.
 pub(crate) fn headroom<L: Law>(
     guard: &mut ExperimentGuard<'_, L>,
     task: &Task<L>,
     gains: &Gains,
+    excitation: Excitation,
 ) -> Result<Headroom, Cause> {
     let law = &task.law;
-    let inner = velocity_loop_of(gains);
     let plant = LoopPlant::new(DiscretePlant::of(&task.plant, law.tick_s()), law, task.lag);
-    let most = highest_calm(&plant, &inner, task.qpps);
-    let wanted = wanted_factor(task.goal.ms).min(most);
-    let predicted = |factor: f64| {
-        task.noise_factor.max(1.0) * plant.margins(&scaled(&inner, factor), task.qpps).noise_duty
-    };
     let lag_s = task.lag.total_s(law.tick_s()) + 2.0 * law.tick_s();
     let tried_s = (LAGS * lag_s).clamp(TRIED_S.0, TRIED_S.1).max(LEAST_POLLS * guard.options.poll_s / HEARD);
+    let mut raised = Raised::new(guard, task, gains, (excitation, tried_s), &plant)?;
+    let most = raised.highest_calm(&plant);
+    let wanted = wanted_factor(task.goal.ms).min(most);
+    raised.write(guard, 1.0)?;
+    raised.go(guard, 1.0)?;
+    // In a travel half a stroke first, so that the others go to and fro about the middle.
     let settle_s = (1.5 * task.plant.tau_s).clamp(0.15, 1.0);
-    guard.write_gains(law, &inner, task.qpps)?;
-    let step = (STEP_DUTY / (wanted * inner.velocity.p).max(1e-6)).clamp(STEP.0, STEP.1);
-    let speed = |side: f64| between_counts((SPEED + side * step) * task.qpps, law.tick_s());
-    guard.speed(speed(-1.0))?;
-    guard.poll_for(settle_s, true)?;
-    let bound = |factor: f64| (TOO_ROUGH * predicted(factor)).max(LEAST_ROUGH);
-    // After a step, with what is still dying out.
-    let bound_after_step = |factor: f64| {
-        bound(factor)
-            .hypot(RINGING * ringing(task, &scaled(&inner, factor), (speed(-1.0), speed(1.0)), tried_s))
+    guard.poll_for(if raised.about.is_some() { 0.5 * tried_s } else { settle_s }, true)?;
+    let predicted = |raised: &Raised<'_, L>, factor: f64| {
+        task.noise_factor.max(1.0) * plant.margins(&raised.gains(factor), task.qpps).noise_duty
     };
+    let bound =
+        |raised: &Raised<'_, L>, factor: f64| (TOO_ROUGH * predicted(raised, factor)).max(LEAST_ROUGH);
     let mut is_doubtful = false;
     let mut heard_above: Option<f64> = None;
-    let mut side = 1.0;
     let mut quiet = 0.0;
     for factor in std::iter::once(1.0).chain(FACTORS.map(|factor| factor.min(wanted))) {
         if factor <= quiet {
             break;
         }
         if factor > 1.0 {
-            if predicted(factor) > LOUDEST {
+            if predicted(&raised, factor) > LOUDEST {
                 // The rounding of a coarse encoder alone makes such a noise.
                 quiet = wanted;
                 is_doubtful = true;
                 break;
             }
-            guard.write_gains(law, &scaled(&inner, factor), task.qpps)?;
+            raised.write(guard, factor)?;
         }
-        let measured = activity(guard, speed(side), tried_s)?;
-        // Looked at twice: what oscillates goes on, unless it is so strong that it had better stop at once.
-        let after_step = (measured > bound(factor)).then(|| bound_after_step(factor));
+        let bound_here = bound(&raised, factor);
+        let measured = raised.activity(guard, factor, true)?;
+        // Looked at twice: what oscillates goes on, unless it is so strong that it had better stop at once. After a step something may still be dying out.
+        let after_step =
+            (measured > bound_here).then(|| bound_here.hypot(RINGING * ringing(&raised, factor)));
         let again = after_step.is_some_and(|most| measured <= AT_ONCE * most);
-        let rough = if again { activity(guard, speed(side), tried_s)? } else { measured };
+        let rough = if again { raised.activity(guard, factor, false)? } else { measured };
+        // Every stroke in a travel is a step.
+        let bound_again = if raised.about.is_some() { after_step.unwrap_or(bound_here) } else { bound_here };
         // Heard once, not again, and not to be expected of a step: backlash may hold it back at a steady speed. Gains that stay below are kept, with a warning.
-        if again && (after_step.is_some_and(|most| measured > most) || rough > bound(factor)) {
+        if again && (after_step.is_some_and(|most| measured > most) || rough > bound_again) {
             is_doubtful = true;
             heard_above.get_or_insert(quiet.max(1.0));
         }
-        if rough > bound(factor) {
+        if rough > bound_again {
             let wanted = full_factor(task.goal.ms).min(most);
             if quiet == 0.0 {
-                match lowered_until_quiet(guard, task, &inner, (speed, bound), (tried_s, rough))? {
+                match lowered_until_quiet(guard, &mut raised, bound, rough)? {
                     Some(share) => quiet = share,
                     None => (quiet, is_doubtful) = (wanted, true),
                 }
@@ -175,18 +310,29 @@ pub(crate) fn headroom<L: Law>(
             return Ok(Headroom { quiet, wanted, is_doubtful });
         }
         quiet = factor;
-        side = -side;
     }
     guard.duty(0.0)?;
     Ok(Headroom { quiet: heard_above.unwrap_or(quiet), wanted, is_doubtful })
 }
 
-/// Deviation of the duty in the same part of a step of the model's loop: what is still dying out there is no oscillation.
-fn ringing<L: Law>(task: &Task<L>, gains: &Gains, (from, to): (f64, f64), tried_s: f64) -> f64 {
-    let mut twin = TickLoop::new(task.plant, task.law, task.lag, *gains, task.qpps).smooth();
-    twin.start_steady(from);
+/// Whether a target may be so far away that its pull is a duty.
+fn has_far<L: Law>(guard: &ExperimentGuard<'_, L>, task: &Task<L>) -> bool {
+    let here = guard.points.last().map_or(0.0, |point| point.counts) + guard.origin_counts() as f64;
+    let limits = guard.proposed_travel(task.qpps).or_else(|| L::position_limits(&guard.setup.held));
+    limits.is_none_or(|(_, high)| here + 2.0 * FAR_S * task.qpps < high as f64)
+}
+
+/// Deviation of the duty in the same part of a step of the model's loop: what is still dying out there is no oscillation. A derivative alone leaves nothing.
+fn ringing<L: Law>(raised: &Raised<'_, L>, factor: f64) -> f64 {
+    if raised.is_direct {
+        return 0.0;
+    }
+    let task = raised.task;
+    let mut twin = TickLoop::new(task.plant, task.law, task.lag, raised.gains(factor), task.qpps).smooth();
+    twin.start_steady(raised.speeds.0);
     let tick_s = task.law.tick_s();
-    let ticks = (tried_s / tick_s) as usize;
+    let ticks = (raised.tried_s / tick_s) as usize;
+    let to = raised.speeds.1;
     let duties: Vec<(f64, f64)> =
         (0..ticks).map(|n| (n as f64 * tick_s, twin.tick(Setpoint::Speed(to), 0.0))).collect();
     deviation(&duties[((1.0 - HEARD) * ticks as f64) as usize..])
@@ -196,22 +342,20 @@ fn ringing<L: Law>(task: &Task<L>, gains: &Gains, (from, to): (f64, f64), tried_
 /// alone: an oscillation would have died out, and what is left is a noise of the encoder that is louder than its rounding.
 fn lowered_until_quiet<L: Law>(
     guard: &mut ExperimentGuard<'_, L>,
-    task: &Task<L>,
-    inner: &Gains,
-    (speed, bound): (impl Fn(f64) -> f64, impl Fn(f64) -> f64),
-    (tried_s, rough): (f64, f64),
+    raised: &mut Raised<'_, L>,
+    bound: impl Fn(&Raised<'_, L>, f64) -> f64,
+    rough: f64,
 ) -> Result<Option<f64>, Cause> {
     let lowest = SHARES[SHARES.len() - 1];
-    let (mut side, mut heard) = (-1.0, rough);
+    let mut heard = rough;
     for share in SHARES {
-        guard.write_gains(&task.law, &scaled(inner, share), task.qpps)?;
+        raised.write(guard, share)?;
         // The first stay lets what went on before die out.
-        activity(guard, speed(side), tried_s)?;
-        heard = activity(guard, speed(-side), tried_s)?;
-        if heard <= bound(share) {
+        raised.activity(guard, share, true)?;
+        heard = raised.activity(guard, share, true)?;
+        if heard <= bound(raised, share) {
             return Ok(Some(share));
         }
-        side = -side;
     }
     let falls_with_gains = heard >= NOISE_SHARE * lowest * rough;
     Ok((!falls_with_gains).then_some(lowest))
@@ -222,14 +366,4 @@ fn lowered_until_quiet<L: Law>(
 fn between_counts(speed: f64, tick_s: f64) -> f64 {
     let per_tick = speed * tick_s;
     if per_tick > LEAST_PER_TICK { (per_tick.floor() + 0.5) / tick_s } else { speed }
-}
-
-/// Deviation of the duty in the second half of a step.
-fn activity<L: Law>(guard: &mut ExperimentGuard<'_, L>, speed: f64, tried_s: f64) -> Result<f64, Cause> {
-    guard.speed(speed)?;
-    let from_s = guard.now_s() + (1.0 - HEARD) * tried_s;
-    guard.poll_for(tried_s, true)?;
-    let duties: Vec<(f64, f64)> =
-        guard.points.iter().filter_map(|point| point.duty).filter(|duty| duty.0 >= from_s).collect();
-    Ok(deviation(&duties))
 }

@@ -2,7 +2,9 @@
 
 use crate::cause::Cause;
 use crate::design::{Design, Task};
-use crate::experiment::{Backlash, FreeRun, OwnTestRun, Probe, RelayRun, StepRun, WindowRun};
+use crate::experiment::{
+    Backlash, FreeRun, OwnTestRun, PositionRelayRun, Probe, RelayRun, StepRun, WindowRun,
+};
 use crate::fit::Fit;
 use crate::lag::LagFit;
 use crate::law::Law;
@@ -75,6 +77,9 @@ pub struct Report<L: Law> {
     /// The relay.
     #[serde(default)]
     pub relay: Option<RelayRun>,
+    /// The relay about a position.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub position_relay: Option<PositionRelayRun>,
     /// The controller's own relay test.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub own_test: Option<OwnTestRun>,

@@ -80,7 +80,7 @@ impl Classic {
     }
 
     /// The ultimate point of the position behind this step: `K / (s (tau s + 1))` with the dead time, at least `floor_s`.
-    fn position_ultimate(&self, floor_s: f64) -> (f64, f64) {
+    pub(crate) fn position_ultimate(&self, floor_s: f64) -> (f64, f64) {
         let dead = self.dead_time_s.max(floor_s);
         let (mut low, mut high) = (1e-3, 1e5);
         for _ in 0..80 {

@@ -6,7 +6,8 @@ use crate::backlash::with_backlash;
 use crate::cause::Cause;
 use crate::design::{Goal, Task, USUAL_OVERSHOOT, design_velocity};
 use crate::experiment::{
-    Probe, go_to, rest, run_free, run_own_test, run_probe, run_relay, run_step, run_window,
+    Probe, go_to, rest, run_free, run_own_test, run_position_relay, run_probe, run_relay, run_step,
+    run_window,
 };
 use crate::experiment_guard::{ExperimentGuard, GuardOptions};
 use crate::fit::{Fit, fit};
@@ -23,7 +24,7 @@ use crate::report::{FORMAT, Report, Verdict};
 pub use crate::request::{Excitation, Identification, MIDDLE_DUTY, Method, Request};
 use crate::rules::Classic;
 use crate::setup::{LoopAxis, Setup};
-use crate::verify::{check_moves, measure_lag};
+use crate::verify::{check_moves, measure_lag, stays_put};
 use crate::winding::winding_of;
 
 /// Highest chi-square of a fit that is believed.
@@ -126,6 +127,7 @@ fn blank<L: Law>(request: &Request<L>) -> Report<L> {
         window: None,
         step: None,
         relay: None,
+        position_relay: None,
         own_test: None,
         classic: None,
         fit: None,
@@ -163,7 +165,7 @@ fn run<L: LawProbe>(
         return Err(Cause::WrappingEncoder);
     }
     let is_free = request.method == Method::Velocity && request.excitation == Excitation::Free;
-    if request.identification != Identification::Fit && !is_free {
+    if request.identification == Identification::Controller && !is_free {
         return Err(Cause::OnlyFree);
     }
     let mark = |report: &mut Report<L>, cause| report.causes.push(cause);
@@ -186,10 +188,13 @@ fn identify<L: Law>(
         Excitation::Free => match request.identification {
             Identification::Fit | Identification::Controller => identify_free(guard, &probe, report)?,
             Identification::Step => {
-                let run = run_step(guard, &probe, request.about_duty)?;
+                let run = run_step(guard, &probe, request.about_duty, request.method != Method::Velocity)?;
                 report.step = Some(run);
                 let tau_s = 0.5 * (run.taus_s.0 + run.taus_s.1);
                 identify_part(guard, &probe, run.from_s, (run.gain_counts_per_s.0, tau_s))?
+            }
+            Identification::Relay if request.method != Method::Velocity => {
+                identify_about(guard, &probe, None, report)?
             }
             Identification::Relay => {
                 let run = run_relay(guard, &probe, request.about_duty)?;
@@ -199,12 +204,23 @@ fn identify<L: Law>(
         },
         Excitation::Window(width) => {
             let width = usable_width(guard, &probe, width)?;
-            identify_window(guard, &probe, width, report)?
+            match request.identification {
+                Identification::Fit => identify_window(guard, &probe, (width, None), report)?,
+                Identification::Step => {
+                    identify_window(guard, &probe, (width, Some(request.about_duty)), report)?
+                }
+                // The controller's own test was refused before.
+                Identification::Relay | Identification::Controller => {
+                    identify_about(guard, &probe, Some(width), report)?
+                }
+            }
         }
     };
     let model = found.fit.model;
     guard.monitor.know(&model);
     guard.monitor.ramp = Some(found.fit.ramp);
+    // A relay switches long before the motor has the speed of its duty.
+    guard.monitor.full_speed = guard.monitor.full_speed.max(found.qpps);
     report.fit = Some(found.fit);
     report.qpps = Some(found.qpps);
     if model.load_duty.abs() > model.coulomb_duty + SURELY_HEAVY {
@@ -322,7 +338,7 @@ fn with_law<L: LawProbe>(
     rest(guard, found.fit.model.tau_s, found.qpps)?;
     let position = request.method != Method::Velocity;
     let held = guard.setup.held;
-    let found = L::probe(guard, &held, &|write| write, probe.start_duty, position)?;
+    let found = L::probe(guard, &held, &|write| write, probe.start_duty, request.method)?;
     let Some(findings) = found else { return Ok(*request) };
     report.law = Some(findings);
     let law = request.law.found(&findings, position).ok_or(Cause::UnknownLaw)?;
@@ -386,14 +402,36 @@ fn identify_part<L: Law>(
 fn identify_window<L: Law>(
     guard: &mut ExperimentGuard<'_, L>,
     probe: &Probe,
-    width: f64,
+    (width, about_duty): (f64, Option<f64>),
     report: &mut Report<L>,
 ) -> Result<Found, Cause> {
-    let run = run_window(guard, probe, width)?;
+    let run = run_window(guard, probe, width, about_duty)?;
     report.window = Some(run);
+    identify_to_and_fro(guard, probe, run.from_s, run.top_speed / (probe.start_duty + 0.4))
+}
+
+/// A relay about where the axis stands, inside `width` counts where there is one.
+fn identify_about<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
+    probe: &Probe,
+    width: Option<f64>,
+    report: &mut Report<L>,
+) -> Result<Found, Cause> {
+    let run = run_position_relay(guard, probe, width)?;
+    report.position_relay = Some(run);
+    // A relay switches before the motor has gathered the speed of its duty.
+    identify_to_and_fro(guard, probe, run.from_s, 2.0 * run.top_speed / run.duties.1)
+}
+
+/// The model of what went to and fro.
+fn identify_to_and_fro<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
+    probe: &Probe,
+    from_s: f64,
+    start: f64,
+) -> Result<Found, Cause> {
     let now_s = guard.now_s();
-    let record = open_loop_record_of(guard, run.from_s, now_s, probe.volts);
-    let start = run.top_speed / (probe.start_duty + 0.4);
+    let record = open_loop_record_of(guard, from_s, now_s, probe.volts);
     let limit = guard.drive_limit(probe.stall_amps);
     let found = fit(&record, start, 0.06, limit, brake_share(guard)).ok_or(Cause::TooCoarse)?;
     believe(&found, guard.options.poll_s, &record)?;
@@ -438,7 +476,7 @@ fn settle_lag<L: Law>(
     task: Task<L>,
     report: &mut Report<L>,
 ) -> Result<Task<L>, Cause> {
-    if !request.verify || request.excitation != Excitation::Free {
+    if !request.verify || !stays_put(&task, request.excitation) {
         return Ok(task);
     }
     let careful = unfiltered(Task { goal: Goal { ms: CAREFUL_MS, ..task.goal }, ..task });
@@ -446,7 +484,15 @@ fn settle_lag<L: Law>(
     let registers = guard.write_gains(&task.law, &design.gains, task.qpps)?;
     let gains = task.law.gains(&registers, task.qpps, false);
     let sd_ln_tau = report.fit.map_or(0.1, |fit| fit.sd_ln_tau);
-    let Some((found, noise_factor)) = measure_lag(guard, &careful, &gains, sd_ln_tau)? else {
+    let measured = match measure_lag(guard, &careful, &gains, sd_ln_tau, request.excitation) {
+        // Too little room for strokes.
+        Err(Cause::TravelLimit) if request.excitation != Excitation::Free => {
+            guard.come_to_rest()?;
+            None
+        }
+        measured => measured?,
+    };
+    let Some((found, noise_factor)) = measured else {
         report.causes.push(Cause::LagUnknown);
         return Ok(task);
     };

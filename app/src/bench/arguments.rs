@@ -34,6 +34,9 @@ pub struct BenchArgs {
     /// Of `tuning`, only the faults: they need no optima.
     #[arg(long)]
     pub faults: bool,
+    /// Of `tuning`, every way to tune, turning freely and in a travel: what is found and what is promised. It needs no optima.
+    #[arg(long, conflicts_with = "faults")]
+    pub ways: bool,
     /// Work the optima out anew and write them to a file instead.
     #[arg(long, value_name = "FILE")]
     pub write_oracle: Option<PathBuf>,

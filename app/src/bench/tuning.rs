@@ -2,6 +2,7 @@
 
 use brushwork_tuning_bench::faults::FaultRow;
 use brushwork_tuning_bench::table::{Row, Table};
+use brushwork_tuning_bench::ways::WayRow;
 
 use super::arguments::BenchArgs;
 use brushwork_cli::Exit;
@@ -24,6 +25,9 @@ const HEADS: [&str; 11] = [
 const FAULT_HEADS: [&str; 8] =
     ["fault", "runs", "off in time %", "named %", "off med s", "off max s", "deadline s", "peak current %"];
 
+const WAY_HEADS: [&str; 9] =
+    ["by", "loop", "", "found %", "no warning %", "accept %", "Ms > 2 %", "Ms > 1.8, no warning %", "s"];
+
 /// Runs the benchmark, or writes its optima.
 pub fn run(args: &BenchArgs, out: &mut Output) -> Exit {
     if args.plants == 0 {
@@ -34,6 +38,11 @@ pub fn run(args: &BenchArgs, out: &mut Output) -> Exit {
     if args.faults {
         let rows = (judge.faults)(args.seed, args.plants);
         let printed = if args.json { out.json(&rows) } else { print_faults(&rows, out) };
+        return printed.map_or_else(Exit::from, |()| Exit::Done);
+    }
+    if args.ways {
+        let rows = (judge.ways)(args.seed, args.plants);
+        let printed = if args.json { out.json(&rows) } else { print_ways(&rows, out) };
         return printed.map_or_else(Exit::from, |()| Exit::Done);
     }
     // The optima take an hour.
@@ -107,6 +116,21 @@ fn print_faults(rows: &[FaultRow], out: &mut Output) -> Result<(), OutputError> 
         ]
     };
     out.table(&FAULT_HEADS, &rows.iter().map(cells).collect::<Vec<_>>())
+}
+
+fn print_ways(rows: &[WayRow], out: &mut Output) -> Result<(), OutputError> {
+    let cells = |row: &WayRow| {
+        let figures =
+            [row.found, row.unwarned, row.accepted, row.beyond, row.overpromised, row.seconds_median];
+        let mut cells = vec![
+            format!("{:?}", row.identification).to_lowercase(),
+            format!("{:?}", row.method).to_lowercase(),
+            if row.in_travel { "in a travel" } else { "freely" }.to_owned(),
+        ];
+        cells.extend(figures.iter().map(ToString::to_string));
+        cells
+    };
+    out.table(&WAY_HEADS, &rows.iter().map(cells).collect::<Vec<_>>())
 }
 
 fn cells(task: &str, row: &Row) -> Vec<String> {

@@ -62,9 +62,14 @@ impl Bench {
 
     /// `brushwork tune velocity` with a report, and what a run keeps in the folder of this test.
     fn tune(&self, arguments: &[&str]) -> Program {
+        self.tune_loop("velocity", arguments)
+    }
+
+    /// The same with any loop.
+    fn tune_loop(&self, which: &str, arguments: &[&str]) -> Program {
         let target = format!("{},stream=usb", self.controller.port().display());
         let mut command = std::process::Command::new(BRUSHWORK);
-        command.args(["tune", "velocity", "-c", &target, "--report"]).arg(self.report_path()).args(arguments);
+        command.args(["tune", which, "-c", &target, "--report"]).arg(self.report_path()).args(arguments);
         for name in ["HOME", "XDG_DATA_HOME", "XDG_CONFIG_HOME", "XDG_STATE_HOME"] {
             command.env(name, self.folder.path());
         }
@@ -324,15 +329,34 @@ fn what_load_the_loop_stands_is_in_the_figures_for_programs_too() {
 }
 
 #[test]
-fn a_position_is_not_tuned_without_saying_how_far_the_axis_may_go_nor_by_a_step() {
+fn a_position_is_not_tuned_without_saying_how_far_the_axis_may_go_nor_by_the_controllers_own_test() {
     for (arguments, words) in [
         (&["tune", "position", "-c", "sim:mcp266"][..], "--turns-freely"),
-        (&["tune", "position", "--method", "step", "-c", "sim:mcp266"], "velocity loop"),
+        (&["tune", "position", "--method", "step", "-c", "sim:mcp266"], "--turns-freely"),
+        (&["tune", "position", "--method", "controller", "-c", "sim:mcp266"], "velocity loop"),
     ] {
         let ending = Program::start(BRUSHWORK, arguments).finish(LIMIT);
         assert_eq!(code(&ending), Some(2), "{ending:?}");
         assert!(ending.stderr.join("\n").contains(words), "{ending:?}");
     }
+}
+
+#[test]
+fn a_position_is_tuned_by_a_relay_about_where_it_stands_and_the_rules_stand_beside_it() {
+    let bench = Bench::new(|_| {});
+    let arguments = ["--turns-freely", "--method", "pd", "--identify", "relay"];
+    let ending = bench.tune_loop("position", &arguments).finish(LIMIT);
+    let found = code(&ending);
+    assert!([TUNED, TUNED_WITH_WARNINGS, TOO_LATE].map(Some).contains(&found), "{ending:?}");
+    if found == Some(TOO_LATE) {
+        return;
+    }
+    let printed = ending.stdout.join("\n");
+    for words in ["limit cycle", "duty/count", "Ziegler-Nichols (of this method)", "position P"] {
+        assert!(printed.contains(words), "{words}: {printed}");
+    }
+    let relay = bench.report().position_relay;
+    assert!(relay.is_some_and(|relay| relay.cycles == 12), "{relay:?}");
 }
 
 #[test]

@@ -229,7 +229,7 @@ fn manners() -> Vec<(&'static str, Manner)> {
         ("sums by seconds", Manner { sums_ticks: false, ..usual.clone() }),
         ("625 ticks a second", Manner { tick_hz: 625.0, ..usual.clone() }),
         ("450 ticks a second", Manner { tick_hz: 450.0, ..usual.clone() }),
-        ("no feed-forward", Manner { feeds_forward: false, ..usual.clone() }),
+        ("no feed-forward", Manner { feed_forward: 0.0, ..usual.clone() }),
         ("no ramp of the duty", Manner { is_abrupt: true, ..usual.clone() }),
         ("clipped speeds", Manner { speed_clip: Some(900), ..usual.clone() }),
         ("slow replies", Manner { delay: Duration::from_millis(18), ..usual.clone() }),
@@ -251,7 +251,7 @@ fn manners() -> Vec<(&'static str, Manner)> {
 fn refusal_of(name: &str, method: Method) -> Option<Cause> {
     match (name, method) {
         // Without it, and without velocity gains, its position loop gives no duty at all.
-        ("no feed-forward", Method::Pd | Method::Piv) => Some(Cause::UnknownLaw),
+        ("no feed-forward", Method::Pd) => Some(Cause::UnknownLaw),
         _ => None,
     }
 }
@@ -273,6 +273,31 @@ fn every_manner_of_controller_ends_in_gains_or_in_an_honest_refusal() {
                 }
             }
         }
+    }
+}
+
+/// What I sums over says nothing of what D takes differences of, nor how much of a setpoint is fed forward.
+#[test]
+fn the_position_loop_of_another_controller_is_measured_and_not_guessed() {
+    let usual = Manner::default();
+    let cases = [
+        (Method::Pd, Manner { sums_ticks: false, ..usual.clone() }),
+        (Method::Pd, Manner { derives_ticks: false, ..usual.clone() }),
+        (Method::Pd, Manner { sums_ticks: false, derives_ticks: false, tick_hz: 625.0, ..usual.clone() }),
+        (Method::Piv, Manner { feed_forward: 0.0, ..usual.clone() }),
+        (Method::Piv, Manner { feed_forward: 0.5, ..usual.clone() }),
+    ];
+    for (method, manner) in cases {
+        let report = tuned(manner.clone(), Motor::default(), Tuning { method, ..Tuning::default() });
+        let case = format!("{method:?} {manner:?}: {:?} {:?}", report.verdict, report.causes);
+        println!("{case}");
+        assert_ne!(report.verdict, Verdict::Refused, "{case}");
+        let law = report.request.law.first.first;
+        assert!((law.position_scale / 1024.0 - 1.0).abs() < 0.04, "{law:?} {case}");
+        assert!((law.feed_forward - manner.feed_forward).abs() < 0.04, "{law:?} {case}");
+        let of_d_s = if manner.derives_ticks { 1.0 / manner.tick_hz } else { 1.0 };
+        let is_asked = method == Method::Pd;
+        assert!(!is_asked || (law.derivative_s() / of_d_s - 1.0).abs() < 0.04, "{law:?} {case}");
     }
 }
 

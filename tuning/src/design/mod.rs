@@ -10,7 +10,7 @@ mod task;
 mod velocity;
 
 pub use binding::{Bound, Limit, limit};
-pub(crate) use position::deadzone;
+pub(crate) use position::{deadzone, direct_gains};
 pub use position::{design_pd, design_pid, design_piv};
 pub use task::{Design, Goal, Task, USUAL_OVERSHOOT};
 pub use velocity::design_velocity;

@@ -8,13 +8,12 @@
 
 use super::Probe;
 use super::free::{rise_s, settle_at, tau_bounds};
+use super::limit_cycle::{CYCLES, FIRST_CYCLES, Figure, Group, figure, groups, is_steady, mean_and_doubt};
 use super::step::about;
 use crate::cause::Cause;
-use crate::experiment_guard::{ExperimentGuard, Input, Point};
+use crate::experiment_guard::ExperimentGuard;
 use crate::law::Law;
-use nalgebra::{Complex, DMatrix, DVector};
 use serde::{Deserialize, Serialize};
-use std::f64::consts::TAU;
 
 /// Half the height of the relay, as duty.
 const HALF_HEIGHT: f64 = 0.22;
@@ -26,22 +25,12 @@ const NOISE_POLLS: usize = 40;
 const HYSTERESIS: f64 = 3.0;
 /// Polls that a speed is taken over: so many to a time constant, at the least and at the most. More make less noise, and a longer delay.
 const SPEED_POLLS: (f64, f64, f64) = (6.0, 2.0, 8.0);
-/// Cycles that are left out at first, that are looked at together, and such groups: a spread wants three at least.
-const FIRST_CYCLES: usize = 2;
-const GROUP: usize = 3;
-const GROUPS: usize = 4;
 /// Longest relay, s.
 const LONGEST_S: f64 = 30.0;
-/// The amplitude at the least, in hysteresis; and spread of the period between groups, relative, beyond which there is no limit cycle.
+/// The amplitude at the least, in hysteresis.
 const LEAST_AMPLITUDE: f64 = 0.8;
-const MOST_SPREAD: f64 = 0.3;
-/// The 97.5 % point of Student's t with three degrees of freedom: the intervals are of four groups.
-const STUDENT: f64 = 3.182;
 /// Half of the 95 % interval of the gain, relative, beyond which the asymmetry tells nothing.
 const WIDEST_GAIN: f64 = 0.3;
-
-/// A figure and half of its 95 % interval.
-pub type Figure = (f64, f64);
 
 /// What a relay read off.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -110,20 +99,12 @@ pub fn run_relay<L: Law>(
     guard.duty(0.0)?;
     guard.poll_for((3.0 * middle.tau_s).clamp(0.06, 0.5), false)?;
     let kept = switched_up_s.get(FIRST_CYCLES..).unwrap_or_default();
-    let groups: Vec<Group> = kept
-        .windows(GROUP + 1)
-        .step_by(GROUP)
-        .filter_map(|ups| Group::of(guard, (ups[0], ups[GROUP]), ups))
-        .collect();
-    if groups.len() < GROUPS {
-        return Err(Cause::NoLimitCycle);
-    }
-    let figure = |of: &dyn Fn(&Group) -> f64| mean_and_doubt(&groups.iter().map(of).collect::<Vec<f64>>());
+    let groups = groups(guard, kept)?;
+    let figure = |of: &dyn Fn(&Group) -> f64| figure(&groups, of);
     let gain = |group: &Group| (group.mean_speed - middle.speed) / (group.mean_duty - middle_duty);
     // Each group misses what its last cycle left of the speed, which the next one has: over all of them that is left once. So the interval, which
     // is that of the mean of the groups, is on the safe side.
-    let whole = kept.first().zip(kept.last()).and_then(|(from, to)| Group::of(guard, (*from, *to), kept));
-    let whole = whole.ok_or(Cause::NoLimitCycle)?;
+    let whole = Group::of(guard, kept).ok_or(Cause::NoLimitCycle)?;
     let by_groups = figure(&gain).1;
     // The speed of the middle duty is known no better than it settled.
     let off = (whole.mean_speed - middle.speed).abs().max(1e-9);
@@ -136,16 +117,14 @@ pub fn run_relay<L: Law>(
         set_speed,
         noise,
         hysteresis,
-        cycles: groups.len() * GROUP,
+        cycles: CYCLES,
         period_s: figure(&|group| group.period_s),
         amplitude: figure(&|group| group.speed.norm()),
         response: figure(&|group| group.speed.norm() / group.duty.norm()),
         lag_deg: figure(&|group| -(group.speed / group.duty).arg().to_degrees()),
         static_gain,
     };
-    let is_steady = run.period_s.1 < MOST_SPREAD * run.period_s.0;
-    let is_clear = run.amplitude.0 > LEAST_AMPLITUDE * hysteresis;
-    if !is_steady || !is_clear {
+    if !is_steady(run.period_s) || run.amplitude.0 <= LEAST_AMPLITUDE * hysteresis {
         return Err(Cause::NoLimitCycle);
     }
     if run.static_gain.0 <= run.response.0 || run.static_gain.1 > WIDEST_GAIN * run.static_gain.0 {
@@ -178,7 +157,7 @@ fn switch<L: Law>(
     let begin_s = guard.now_s();
     let mut is_up = true;
     guard.duty(duties.1)?;
-    while ups.len() <= FIRST_CYCLES + GROUP * GROUPS {
+    while ups.len() <= FIRST_CYCLES + CYCLES {
         if guard.now_s() - begin_s > LONGEST_S {
             return Err(Cause::NoLimitCycle);
         }
@@ -196,84 +175,4 @@ fn switch<L: Law>(
         }
     }
     Ok(ups)
-}
-
-/// A few cycles together.
-struct Group {
-    period_s: f64,
-    mean_speed: f64,
-    mean_duty: f64,
-    /// The first harmonics.
-    speed: Complex<f64>,
-    duty: Complex<f64>,
-}
-
-impl Group {
-    /// From the counts and duties between two times, which are whole cycles.
-    fn of<L: Law>(guard: &ExperimentGuard<'_, L>, (from_s, to_s): (f64, f64), ups: &[f64]) -> Option<Self> {
-        let cycles = (ups.len() - 1) as f64;
-        let (span_s, omega) = (to_s - from_s, TAU * cycles / (to_s - from_s));
-        let points: Vec<&Point> = guard.points.iter().filter(|p| p.t >= from_s && p.t <= to_s).collect();
-        let (slope, place) = harmonic_of(&points, from_s, omega)?;
-        let duties: Vec<(f64, f64)> = guard
-            .drives
-            .iter()
-            .filter(|drive| drive.t >= from_s - 1e-9)
-            .filter_map(|drive| match drive.input {
-                Input::Duty(duty) => Some((drive.t, duty)),
-                Input::Speed(_) | Input::Position(..) => None,
-            })
-            .collect();
-        let (mut mean_duty, mut harmonic) = (0.0, Complex::new(0.0, 0.0));
-        for (n, (at_s, duty)) in duties.iter().enumerate() {
-            let until_s = duties.get(n + 1).map_or(to_s, |next| next.0).min(to_s);
-            let (a, b) = (at_s - from_s, until_s - from_s);
-            if b <= a {
-                continue;
-            }
-            mean_duty += duty * (b - a) / span_s;
-            // 2/T times the integral of u exp(-jwt).
-            let wave = |t: f64| Complex::new(0.0, -omega * t).exp();
-            harmonic += (wave(b) - wave(a)) / Complex::new(0.0, -omega) * (2.0 * duty / span_s);
-        }
-        Some(Self {
-            period_s: span_s / cycles,
-            mean_speed: slope,
-            mean_duty,
-            speed: place * Complex::new(0.0, omega),
-            duty: harmonic,
-        })
-    }
-}
-
-/// The slope of counts, and the first harmonic of what is beside it, by least squares with the next two harmonics beside. `None` with too few.
-fn harmonic_of(points: &[&Point], from_s: f64, omega: f64) -> Option<(f64, Complex<f64>)> {
-    const TERMS: usize = 8;
-    if points.len() < TERMS + 4 {
-        return None;
-    }
-    let first = points.first()?.counts;
-    let row = |t: f64| {
-        let mut row = vec![1.0, t];
-        for n in 1..=3 {
-            let at = f64::from(n) * omega * t;
-            row.extend([at.cos(), at.sin()]);
-        }
-        row
-    };
-    let rows: Vec<f64> = points.iter().flat_map(|point| row(point.t - from_s)).collect();
-    let matrix = DMatrix::from_row_slice(points.len(), TERMS, &rows);
-    let right = DVector::from_iterator(points.len(), points.iter().map(|point| point.counts - first));
-    let square = matrix.transpose() * &matrix;
-    let found = square.lu().solve(&(matrix.transpose() * right))?;
-    // c cos + s sin is the real part of (c - js) exp(jwt).
-    Some((found[1], Complex::new(found[2], -found[3])))
-}
-
-/// A mean, and half of the 95 % interval of it.
-fn mean_and_doubt(values: &[f64]) -> Figure {
-    let count = values.len().max(1) as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    let square = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
-    (mean, STUDENT * (square / count).sqrt())
 }

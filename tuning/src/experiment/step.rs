@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 /// Half the height of the step, as duty, at the most; the duty above the starting one at the least; and the least height, below which the
 /// friction and not the motor would be measured.
-const HALF_HEIGHT: f64 = 0.15;
+pub(super) const HALF_HEIGHT: f64 = 0.15;
 const ABOVE_START: f64 = 0.06;
 const LEAST_HALF: f64 = 0.04;
 /// Half of the 95 % interval of the gain, relative, beyond which the step tells nothing: the rules go with it one to one.
@@ -47,11 +47,13 @@ pub(super) fn about<L: Law>(
     Ok((middle - half, middle + half))
 }
 
-/// Runs it about a duty. The motor is braked when it returns.
+/// Runs it about a duty, and the lower duty the other way too for gains of moves `both_ways`: what turns one way only does not tell a load from
+/// friction. The motor is braked when it returns.
 pub fn run_step<L: Law>(
     guard: &mut ExperimentGuard<'_, L>,
     probe: &Probe,
     duty: f64,
+    both_ways: bool,
 ) -> Result<StepRun, Cause> {
     guard.monitor.start_duty = probe.start_duty;
     guard.monitor.stall_amps = probe.stall_amps;
@@ -64,6 +66,9 @@ pub fn run_step<L: Law>(
     guard.monitor.tau_bounds_s = Some(tau_bounds(below.tau_s, rise));
     let above = settle_at(guard, duties.1)?;
     let again = settle_at(guard, duties.0)?;
+    if both_ways {
+        settle_at(guard, -duties.0)?;
+    }
     guard.duty(0.0)?;
     guard.poll_for((3.0 * below.tau_s).clamp(0.06, 0.5), false)?;
     let (height, before) = (duties.1 - duties.0, 0.5 * (below.speed + again.speed));

@@ -1,6 +1,7 @@
-//! The experiment inside a travel window: a relay on the position at two duties, never at full speed.
+//! The experiment inside a travel window: to and fro at two duties, never at full speed.
 
 use super::Probe;
+use super::step::{HALF_HEIGHT, about};
 use crate::cause::Cause;
 use crate::experiment_guard::ExperimentGuard;
 use crate::law::Law;
@@ -42,14 +43,21 @@ pub struct WindowRun {
     pub top_speed: f64,
     /// Farthest distance from the middle, counts.
     pub reach_counts: f64,
+    /// The duties, where a person chose what they lie about.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub step_duties: Option<(f64, f64)>,
 }
 
-/// Runs it inside `width` counts around where the axis is now. The motor is braked when it returns.
+/// Runs it inside `width` counts around where the axis is now, at two duties about one where that is given. The motor is braked when it returns.
 pub fn run_window<L: Law>(
     guard: &mut ExperimentGuard<'_, L>,
     probe: &Probe,
     width: f64,
+    about_duty: Option<f64>,
 ) -> Result<WindowRun, Cause> {
+    let chosen = about_duty.map(|duty| about(guard, probe, duty, HALF_HEIGHT)).transpose()?;
+    let usual = DUTIES.map(|above| (probe.start_duty + above).min(guard.options.max_duty));
+    let duties = chosen.map_or(usual, |(low, high)| [low, high]);
     guard.monitor.start_duty = probe.start_duty;
     guard.monitor.stall_amps = probe.stall_amps;
     guard.monitor.drive_limit = guard.drive_limit(probe.stall_amps);
@@ -57,29 +65,29 @@ pub fn run_window<L: Law>(
     let middle = guard.points.last().map_or(0.0, |p| p.counts);
     let mut turn = Turn { acts_s: ACTS_S, last: None, share: 1.0 };
     for _ in 0..NARROWER {
-        match oscillate(guard, probe, (middle, width), &mut turn) {
+        match oscillate(guard, duties, (middle, width), &mut turn) {
             Err(Cause::TravelLimit) if (guard.turned_at_counts() - middle).abs() < NEAREST_SHARE * width => {
                 // The guard brought it to rest before the end. What it learned of the stopping distance stays, and it keeps farther away.
                 guard.come_to_rest()?;
                 go_to(guard, probe, middle)?;
                 turn.share *= NARROWER_SHARE;
             }
-            other => return other,
+            other => return other.map(|run| WindowRun { step_duties: chosen, ..run }),
         }
     }
-    oscillate(guard, probe, (middle, width), &mut turn)
+    oscillate(guard, duties, (middle, width), &mut turn).map(|run| WindowRun { step_duties: chosen, ..run })
 }
 
 /// Oscillates about the middle of a width at both duties.
 fn oscillate<L: Law>(
     guard: &mut ExperimentGuard<'_, L>,
-    probe: &Probe,
+    duties: [f64; 2],
     (middle, width): (f64, f64),
     turn: &mut Turn,
 ) -> Result<WindowRun, Cause> {
-    let mut run = WindowRun { from_s: guard.now_s(), switches: 0, top_speed: 0.0, reach_counts: 0.0 };
-    for above in DUTIES {
-        let duty = (probe.start_duty + above).min(guard.options.max_duty);
+    let from_s = guard.now_s();
+    let mut run = WindowRun { from_s, switches: 0, top_speed: 0.0, reach_counts: 0.0, step_duties: None };
+    for duty in duties {
         oscillate_at(guard, duty, middle, width, &mut run, turn)?;
     }
     guard.come_to_rest()?;

@@ -61,7 +61,7 @@ pub(crate) fn by_moves<L: Law>(
         return Err(Cause::NoSuchLoop);
     }
     if request.identification != Identification::Fit {
-        return Err(Cause::OnlyFree);
+        return Err(Cause::NoOpenLoop);
     }
     guard.progress("Looking for the least gain that moves the motor");
     let law = request.law;

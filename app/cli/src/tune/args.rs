@@ -77,9 +77,15 @@ pub struct VelocityArgs {
 /// A run of a position loop.
 #[derive(Debug, Args)]
 pub struct PositionArgs {
-    /// Form of the loop; it is identified by fit (step, relay and controller are for the velocity loop).
+    /// Form of the loop; fit, step and relay stand for PIV, or PID where a controller has no such loop, identified so.
     #[arg(long, value_enum, default_value_t = MethodArg::Fit)]
     pub method: MethodArg,
+    /// How the motor of a PD, PID or PIV loop is identified, and whose gains are proposed.
+    #[arg(long, value_enum, default_value_t = PositionIdentificationArg::Fit)]
+    pub identify: PositionIdentificationArg,
+    /// Duty about which a step works, in percent. A relay works about where the axis stands.
+    #[arg(long, value_name = "PERCENT", default_value_t = 50, value_parser = clap::value_parser!(u8).range(10..=90))]
+    pub about: u8,
     /// The axis has no end stops: it is driven at up to full duty both ways. Position limits of 0 to 0, within which it could not move, become
     /// those of a minute at full speed to either side of where it stands.
     #[arg(long, conflicts_with = "travel")]
@@ -101,6 +107,17 @@ pub enum IdentificationArg {
     /// The controller's own relay test about that speed, beside a fitted model; gains by Tyreus-Luyben. Simulated MCPs and RoboClaws only: how a real one
     /// does it is not public.
     Controller,
+}
+
+/// How the motor of a position loop is identified.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum PositionIdentificationArg {
+    /// A model fitted to several motions; gains searched for on it.
+    Fit,
+    /// A step about a duty (--about), to and fro within --travel; gains by SIMC.
+    Step,
+    /// A relay about where the axis stands; gains by Tyreus-Luyben, of a PD loop by Ziegler-Nichols.
+    Relay,
 }
 
 /// A run on a machine.
@@ -170,9 +187,9 @@ pub enum MethodArg {
     Piv,
     /// PIV; PID where the controller has no velocity loop under its position loop.
     Fit,
-    /// Not for positions.
+    /// The same loop, by a step.
     Step,
-    /// Not for positions.
+    /// The same loop, by a relay.
     Relay,
     /// Not for positions.
     Controller,

@@ -21,7 +21,7 @@ use super::interrupt::exit_of_interruption;
 use super::settings::controller::Controller;
 use super::settings::memory::save_to_eeprom;
 use super::{Exit, Interrupt, NewFile, Output, say};
-use args::{EncoderArg, IdentificationArg, MethodArg, RunArgs};
+use args::{EncoderArg, IdentificationArg, MethodArg, PositionIdentificationArg, RunArgs};
 pub use args::{TuneArgs, TuneCommand};
 use brushwork_core::keep::TrialKeeper;
 use brushwork_core::tune::law::{self, Report, Request as TuneRequest};
@@ -51,17 +51,22 @@ pub fn run(args: &TuneArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
             let method = match args.method {
                 MethodArg::Pd => Method::Pd,
                 MethodArg::Pid => Method::Pid,
-                MethodArg::Piv | MethodArg::Fit => Method::Piv,
-                MethodArg::Step | MethodArg::Relay | MethodArg::Controller => {
-                    return Exit::Usage.saying(CliTuneMessage::NotForPositions);
-                }
+                MethodArg::Piv | MethodArg::Fit | MethodArg::Step | MethodArg::Relay => Method::Piv,
+                MethodArg::Controller => return Exit::Usage.saying(CliTuneMessage::NotForPositions),
+            };
+            let identification = match (args.method, args.identify) {
+                (MethodArg::Step, _) | (_, PositionIdentificationArg::Step) => Identification::Step,
+                (MethodArg::Relay, _) | (_, PositionIdentificationArg::Relay) => Identification::Relay,
+                _ => Identification::Fit,
             };
             let has_range = args.run.encoder.is_some_and(|encoder| encoder != EncoderArg::Quadrature);
             if args.run.travel.is_none() && !args.turns_freely && !has_range {
                 return Exit::Usage.saying(CliTuneMessage::NoTravel);
             }
-            let or_pid = args.method == MethodArg::Fit;
-            tune(&args.run, Wanted { or_pid, ..Wanted::of(method) }, out, interrupt)
+            let or_pid = matches!(args.method, MethodArg::Fit | MethodArg::Step | MethodArg::Relay);
+            let about_duty = f64::from(args.about) / 100.0;
+            let wanted = Wanted { or_pid, identification, about_duty, ..Wanted::of(method) };
+            tune(&args.run, wanted, out, interrupt)
         }
         TuneCommand::Replay { report, json } => replay::run(report, *json, out),
     }

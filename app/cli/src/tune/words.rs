@@ -1,7 +1,7 @@
 //! A report in words and figures.
 
-use brushwork_core::tune::law::{AnyLaw, Report};
-use brushwork_tuning::alternatives::{Alternative, Rule, alternatives};
+use brushwork_core::tune::law::Report;
+use brushwork_core::tune::words::{RULE_HEAD, experiments, rules};
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::law::Law;
 use brushwork_tuning::load_change::{HEADS, LoadChange};
@@ -99,7 +99,9 @@ pub fn print(report: &Report, out: &mut Output) -> Result<(), OutputError> {
             range,
         );
     }
-    experiments(report, &mut row);
+    for [name, value, doubt] in experiments(report) {
+        row(&name, value, doubt.replace('±', "+-"));
+    }
     if let Some(seen) = report.classic.filter(|_| report.request.identification != Identification::Fit) {
         row("Ku of the loop", format!("{:.3e} duty/(counts/s)", seen.ultimate_gain), String::new());
         row("Tu of the loop", format!("{:.1} ms", 1e3 * seen.ultimate_period_s), String::new());
@@ -148,73 +150,8 @@ pub fn print(report: &Report, out: &mut Output) -> Result<(), OutputError> {
         out.table(&HEADS, &rows)?;
     }
     print_gains(report, out)?;
-    print_rules(report, out)
-}
-
-/// What a step, a relay or the controller's own test read off.
-fn experiments(report: &Report, row: &mut dyn FnMut(&str, String, String)) {
-    if let Some(step) = &report.step {
-        let (low, high) = (100.0 * step.duties.0, 100.0 * step.duties.1);
-        row("step", format!("{low:.0} to {high:.0} % duty"), String::new());
-        let (gain, doubt) = step.gain_counts_per_s;
-        row("gain of the step", format!("{gain:.0} counts/s"), format!("+- {:.1} %", 100.0 * doubt / gain));
-    }
-    if let Some(relay) = &report.relay {
-        let percent = |(value, doubt): (f64, f64)| format!("+- {:.1} %", 100.0 * doubt / value.abs());
-        let (low, high) = (100.0 * relay.duties.0, 100.0 * relay.duties.1);
-        row(
-            "relay",
-            format!("{low:.0} and {high:.0} % duty"),
-            format!("about {:.0} counts/s", relay.set_speed),
-        );
-        row(
-            "hysteresis",
-            format!("{:.0} counts/s", relay.hysteresis),
-            format!("noise {:.0} counts/s", relay.noise),
-        );
-        row("limit cycle", format!("{:.1} ms", 1e3 * relay.period_s.0), percent(relay.period_s));
-        let gain = relay.cycle_gain();
-        row("gain for the cycle", format!("{:.3e} duty/(counts/s)", gain.0), percent(gain));
-        row("gain at 0 Hz", format!("{:.0} counts/s", relay.static_gain.0), percent(relay.static_gain));
-    }
-    if let Some(test) = &report.own_test {
-        let (low, high) = (100.0 * test.duties.0, 100.0 * test.duties.1);
-        row(
-            "controller's own test",
-            format!("{low:.0} and {high:.0} % duty"),
-            format!("about {:.0} counts/s", test.set_speed),
-        );
-        row(
-            "its oscillation",
-            format!("{:.0} counts/s", test.amplitude),
-            format!("hysteresis {:.0} counts/s", test.hysteresis),
-        );
-        row("its period", format!("{:.1} ms", 1e3 * test.period_s), String::new());
-    }
-}
-
-/// What the textbook rules would set, with what they promise on the same model.
-fn print_rules(report: &Report, out: &mut Output) -> Result<(), OutputError> {
-    let rules = alternatives(report);
-    let of_method = Rule::of_method(report.request.identification);
-    let row = |found: &Alternative<AnyLaw>| {
-        let of = |text: String| if found.is_stable { text } else { "unstable".to_owned() };
-        let is_own = if found.rule == of_method { " (of this method)" } else { "" };
-        vec![
-            format!("{}{is_own}", found.rule.name()),
-            format!("{:.3}", found.design.gains.velocity.p),
-            format!("{:.2}", found.design.gains.velocity.i),
-            of(format!("{:.2}", found.design.ms)),
-            of(format!("{:.0} %", 100.0 * found.design.score.overshoot)),
-            of(format!("{:.0} ms", 1e3 * found.design.score.settling_s)),
-        ]
-    };
-    let rows: Vec<Vec<String>> = rules.iter().map(row).collect();
-    if rows.is_empty() {
-        Ok(())
-    } else {
-        out.table(&["rule", "velocity P", "velocity I", "Ms", "overshoot", "settling"], &rows)
-    }
+    let rules: Vec<Vec<String>> = rules(report).into_iter().map(|row| row.to_vec()).collect();
+    if rules.is_empty() { Ok(()) } else { out.table(&RULE_HEAD, &rules) }
 }
 
 fn print_gains(report: &Report, out: &mut Output) -> Result<(), OutputError> {

@@ -10,6 +10,7 @@ pub mod law;
 pub mod live;
 pub mod page;
 pub mod sequence;
+pub mod words;
 
 use crate::messages::{CoreActMessage, CoreCauseMessage, CoreRemedyMessage};
 use brushwork_family::messages::LoopActMessage;

@@ -1,8 +1,8 @@
 //! A run as one page for people: what was found, which gains, what they promise, with plots. It needs nothing beside it: styles and plots are in it.
 
+use super::words::{RULE_HEAD, experiments, rules};
 use std::fmt::Write as _;
 
-use brushwork_tuning::alternatives::alternatives;
 use brushwork_tuning::law::Law as _;
 use brushwork_tuning::load_change::{Changed, HEADS, LoadChange};
 use brushwork_tuning::promise::Promise;
@@ -108,38 +108,10 @@ fn motor(page: &mut String, report: &Report) {
         let (low, high) = (1e3 * lag.interval_s.0, 1e3 * lag.interval_s.1);
         row("Lag of the loop", format!("{:.1} ms", 1e3 * total_s), format!("{low:.1} to {high:.1} ms"));
     }
-    if let Some(relay) = &report.relay {
-        let percent = |(value, doubt): (f64, f64)| format!("± {:.1} %", 100.0 * doubt / value.abs());
-        row(
-            "Period of the limit cycle",
-            format!("{:.1} ms", 1e3 * relay.period_s.0),
-            percent(relay.period_s),
-        );
-        row(
-            "Hysteresis",
-            format!("{:.0} counts/s", relay.hysteresis),
-            format!("noise {:.0} counts/s", relay.noise),
-        );
-        row(
-            "Gain at frequency zero",
-            format!("{:.0} counts/s", relay.static_gain.0),
-            percent(relay.static_gain),
-        );
-    }
-    if let Some(test) = &report.own_test {
-        row(
-            "Oscillation of the controller's own test",
-            format!("{:.0} counts/s", test.amplitude),
-            format!("hysteresis {:.0} counts/s", test.hysteresis),
-        );
-        row("Its period", format!("{:.1} ms", 1e3 * test.period_s), String::new());
-    }
+    rows.extend(experiments(report));
     if let Some(winding) = &report.winding {
-        row(
-            "Resistance R",
-            format!("{:.3} ohm", winding.ohms),
-            format!("± {:.3} ohm", winding.interval_ohms),
-        );
+        let interval = format!("± {:.3} ohm", winding.interval_ohms);
+        rows.push(["Resistance R".to_owned(), format!("{:.3} ohm", winding.ohms), interval]);
     }
     table(page, "The motor", &["", "value", "interval"], &rows);
 }
@@ -197,21 +169,7 @@ fn promised(page: &mut String, report: &Report) {
     }
     table(page, "The loop with these gains", &["", "value", WHAT], &rows);
     load_change(page, report);
-    let rules: Vec<[String; 6]> = alternatives(report)
-        .iter()
-        .map(|found| {
-            let of = |text: String| if found.is_stable { text } else { "unstable".to_owned() };
-            [
-                found.rule.name().to_owned(),
-                format!("{:.3}", found.design.gains.velocity.p),
-                format!("{:.2}", found.design.gains.velocity.i),
-                of(format!("{:.2}", found.design.ms)),
-                of(format!("{:.0} %", 100.0 * found.design.score.overshoot)),
-                of(format!("{:.0} ms", 1e3 * found.design.score.settling_s)),
-            ]
-        })
-        .collect();
-    table(page, "Rules on the same model", &["", "P", "I, 1/s", "Ms", "overshoot", "settling"], &rules);
+    table(page, "Rules on the same model", &RULE_HEAD, &rules(report));
     let replies =
         |of: &[brushwork_tuning::whatif::Reply]| of.iter().map(|reply| (reply.t, reply.value)).collect();
     let up = if design.gains.position.is_some() { "counts" } else { "counts/s" };

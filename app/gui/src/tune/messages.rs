@@ -72,7 +72,7 @@ messages! {
         Lag { low: f64, high: f64 } ", lag {low:.1} to {high:.1} ms",
         Backlash { counts: f64, interval: f64 } ", backlash of at least {counts:.1} ± {interval:.1} counts",
         Proposed { motor: Motor, field: &'static str } "{motor} proposed {field}",
-        Rule { p: f64, i: f64, ms: f64, overshoot_percent: f64 } "P {p:.3}, I {i:.2}: Ms {ms:.2}, overshoot {overshoot_percent:.0} % on the model",
+        Rule { gains: String, ms: f64, overshoot_percent: f64 } "{gains}: Ms {ms:.2}, overshoot {overshoot_percent:.0} % on the model",
         Considered { level: f64 } "Considered on the model only: level {level:.0}, or gains by hand. Nothing was sent.",
         Trajectory { speed: f64, accel: f64 } "A trajectory that the motor follows: {speed:.0} counts/s, {accel:.0} counts/s² up and down.",
         TrajectoryOfBoth { speed: f64, accel: f64 } "One that both motors follow alike: {speed:.0} counts/s, {accel:.0} counts/s² up and down.",

@@ -47,6 +47,7 @@ fn steps(cause: Cause) -> &'static [&'static str] {
         ],
         Cause::AnsweredLate { whose, .. } | Cause::TakenLate { whose, .. } => against_lateness(whose),
         Cause::OnlyFree
+        | Cause::NoOpenLoop
         | Cause::NoRoomForStep
         | Cause::StepUnclear
         | Cause::NoLimitCycle

@@ -1,6 +1,7 @@
 //! What a run has found: its verdict, the gains as current, proposed and change, what they promise, and the runs so far.
 
 use brushwork_core::tune::law::{AnyRegisters, Report};
+use brushwork_core::tune::words::gains_text;
 use brushwork_tuning::report::Verdict;
 use brushwork_tuning::tune::Method;
 use egui::{Button, Grid, Label, RichText, Ui, vec2};
@@ -205,8 +206,7 @@ fn rules_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
             let is_shown = shown.is_some_and(|shown| shown.same_gains(&found.registers));
             let hint = if found.is_stable {
                 RunMessage::Rule {
-                    p: found.design.gains.velocity.p,
-                    i: found.design.gains.velocity.i,
+                    gains: gains_text(&found.design.gains),
                     ms: found.design.ms,
                     overshoot_percent: 100.0 * found.design.score.overshoot,
                 }

@@ -146,9 +146,11 @@ fn options_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
     if !is_wide {
         ui.horizontal(|ui| limits_ui(ui, setting, has_duty, has_encoders));
     }
-    if which == Loop::Velocity {
-        let no_own_test =
-            family.lacks(Ability::OwnTest).or_else(|| (!is_simulated).then_some(NOT_ON_REAL_ONES));
+    if has_duty {
+        let no_own_test = family
+            .lacks(Ability::OwnTest)
+            .or_else(|| (!is_simulated).then_some(NOT_ON_REAL_ONES))
+            .or_else(|| (which == Loop::Position || !setting.turns_freely).then_some(NOT_FOR_POSITIONS));
         ui.horizontal(|ui| identification_ui(ui, setting, no_own_test));
     }
     let is_said = lacked_travel && !setting.lacks_travel();
@@ -159,21 +161,32 @@ fn options_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
 const NOT_ON_REAL_ONES: &str = "Simulated controllers only: no manual says how a controller's own test drives the motor and how it ends, and with wrong wiring it can lock \
                                 the controller up (MCP manual 2.4.5).";
 
-/// How the motor of a velocity loop is identified; `no_own_test` says why the controller's own test is not to be had, if so.
+/// What the relay of a speed does, and that of a position or in a travel.
+const RELAY_ABOUT_SPEED: &str = "Astrom and Hagglund's relay about the speed of a duty, until the motor goes round in a limit cycle; gains by the rule of Tyreus and Luyben";
+const RELAY_ABOUT_PLACE: &str = "Astrom and Hagglund's relay about where the axis stands, until it goes to and fro in a limit cycle; gains by the rule of Tyreus and Luyben, of a \
+                                 PD loop by that of Ziegler and Nichols";
+/// The same in a position loop, and in a travel.
+const NOT_FOR_POSITIONS: &str = "The controller's own test turns the motor at a speed: it is for the velocity loop of a motor that may turn freely.";
+
+/// How the motor is identified; `no_own_test` says why the controller's own test is not to be had, if so.
 fn identification_ui(ui: &mut Ui, setting: &mut Setting, no_own_test: Option<&str>) {
     ui.label("Identify");
+    let is_about_place = setting.method != Method::Velocity || !setting.turns_freely;
     for (identification, name, hint) in [
         (
             Identification::Fit,
             "By fit",
             "Several motions up to full duty, a model fitted to them, and gains searched for on it",
         ),
-        (Identification::Step, "By step", "One step about a duty and never more; gains by the rule SIMC"),
+        (
+            Identification::Step,
+            "By step",
+            "One step about a duty and never more, in a travel several to and fro; gains by the rule SIMC",
+        ),
         (
             Identification::Relay,
             "By relay",
-            "Astrom and Hagglund's relay about the speed of a duty, until the motor goes round in a limit cycle; gains by the rule of \
-             Tyreus and Luyben",
+            if is_about_place { RELAY_ABOUT_PLACE } else { RELAY_ABOUT_SPEED },
         ),
     ] {
         ui.radio_value(&mut setting.identification, identification, name).on_hover_text(hint);
@@ -186,7 +199,12 @@ fn identification_ui(ui: &mut Ui, setting: &mut Setting, no_own_test: Option<&st
             )
             .on_disabled_hover_text(no_own_test.unwrap_or_default());
     });
-    if setting.identification != Identification::Fit {
+    let has_duty_about = match setting.identification {
+        Identification::Fit => false,
+        Identification::Relay => !is_about_place,
+        Identification::Step | Identification::Controller => true,
+    };
+    if has_duty_about {
         ui.label("about");
         let duty = Numeric {
             name: "About duty",

@@ -109,6 +109,40 @@ fn the_other_methods_are_picked_and_the_rules_on_their_model_are_considered_besi
 }
 
 #[test]
+fn a_position_is_tuned_by_step_and_by_relay_freely_and_in_a_travel() {
+    for (label, identification, method) in
+        [("By step", Identification::Step, "PD"), ("By relay", Identification::Relay, "PIV")]
+    {
+        for is_inside in [false, true] {
+            let mut bench = opened("small-gearmotor", "Position Settings");
+            let start = bench.truth().axes[0].encoder_counts;
+            bench.press(method);
+            bench.press(label);
+            assert_eq!(bench.sees("about"), label == "By step", "a relay works about where the axis stands");
+            if is_inside {
+                bench.press("Within");
+                bench.enter("Travel low", &(start - 2_000).to_string());
+                bench.enter("Travel high", &(start + 2_000).to_string());
+            } else {
+                bench.press("Turns freely");
+            }
+            bench.press("Tune M1");
+            finish(&mut bench);
+            let tuned = run(&mut bench, Loop::Position);
+            let case = format!("{label}, {method}, inside: {is_inside}");
+            assert_ne!(tuned.report.verdict, Verdict::Refused, "{case}: {:?}", tuned.report.causes);
+            assert_eq!(tuned.report.request.identification, identification, "{case}");
+            assert_eq!(tuned.report.position_relay.is_some(), label == "By relay", "{case}");
+            assert!(tuned.rules.len() > 2, "{case}: the rules stand beside it");
+            let proposed = proposed(&mut bench, Loop::Position);
+            bench.press("Apply (RAM)");
+            bench.pass_ms(4000);
+            assert_holds(&bench, proposed);
+        }
+    }
+}
+
+#[test]
 fn within_its_travel_an_actuator_is_tuned_without_leaving_it() {
     let mut bench = opened("linear-actuator", "Position Settings");
     let start = bench.truth().axes[0].encoder_counts;

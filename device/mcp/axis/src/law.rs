@@ -15,6 +15,7 @@ use brushwork_tuning::law::{Ending, Facts, Law, Seen};
 use brushwork_tuning::law_probe::LawProbe;
 use brushwork_tuning::model::Gains;
 use brushwork_tuning::setpoint::Setpoint;
+use brushwork_tuning::tune::Method;
 
 /// None of the firmware's law is public, so that a run finds it out.
 static FACTS: Facts = Facts { can_be_probed: true, ..CASCADE };
@@ -146,10 +147,9 @@ impl LawProbe for McpLaw {
         held: &McpHeld,
         write: &dyn Fn(McpWrite) -> J::Write,
         start_duty: f64,
-        is_position: bool,
+        method: Method,
     ) -> Result<Option<LawFindings>, Cause> {
-        let position = held.position;
-        probe_law(guard, write, start_duty, is_position.then_some((position.min, position.max)))
+        probe_law(guard, write, start_duty, (held.position.min, held.position.max), method)
     }
 }
 

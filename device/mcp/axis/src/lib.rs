@@ -5,8 +5,10 @@
 
 #![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
 
+mod derivative;
 mod law;
 mod probe;
+mod probed;
 mod registers;
 mod table;
 

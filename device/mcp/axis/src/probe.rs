@@ -4,15 +4,16 @@
 //! back (command 48) then says what that gain is multiplied with: whether the setpoint's share of QPPS is added, the scale of P, how
 //! fast I sums up, the scale of the position gains. The motor stays where it is, so this needs no travel.
 
-use crate::registers::{McpLaw, McpWrite, PositionRegisters, VELOCITY_SCALE, VelocityRegisters};
+use crate::derivative::{derivative_under, known_derivative_s};
+use crate::probed::{Probed, QPPS, RATES_HZ, gains};
+use crate::registers::{McpLaw, McpWrite, PositionRegisters, VELOCITY_SCALE};
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::experiment_guard::{ExperimentGuard, Point};
 use brushwork_tuning::law::Law;
 use brushwork_tuning::law_probe::speed_step;
+use brushwork_tuning::tune::Method;
 use serde::{Deserialize, Serialize};
 
-/// QPPS while probing: so high that the command is large beside whatever the motor still creeps.
-const QPPS: f64 = 10_000_000.0;
 /// Share of the starting duty that is given, and its bounds.
 const DUTY_SHARE: f64 = 0.35;
 const DUTY: (f64, f64) = (0.006, 0.03);
@@ -43,8 +44,7 @@ const LEAST_TICKS_PER_S: f64 = 20.0;
 const MOST_TICKS_COUNTED: f64 = 8.0;
 /// Highest share of the setpoint that is believed.
 const MOST_SHARE: f64 = 2.0;
-/// Loop rates, Hz, and position scales that are known.
-const RATES_HZ: [u32; 2] = [300, 625];
+/// Position scales that are known.
 const SCALES: [f64; 2] = [1024.0, 2048.0];
 /// How far a finding may be from what is known.
 const TOLERANCE: f64 = 0.06;
@@ -60,6 +60,9 @@ pub struct LawFindings {
     pub sums_per_s: f64,
     /// Wire value of a position gain of 1; `None` where it was not asked for, or the position loop gave no duty.
     pub position_scale: Option<f64>,
+    /// Seconds that a position D of 1 multiplies the speed with, where the method has one and it could be read.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub derivative_s: Option<f64>,
     /// The step of the unfiltered speed, counts/s, where the sums do not tell the rate of the loop.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_step: Option<f64>,
@@ -94,7 +97,17 @@ impl LawFindings {
             None => usual.position_scale,
         };
         let rate_hz = rate_hz.round() as u32;
-        Some(McpLaw { rate_hz, per_tick, position_scale, feed_forward, velocity_scale, integral_scale })
+        let law = McpLaw {
+            rate_hz,
+            per_tick,
+            position_scale,
+            feed_forward,
+            velocity_scale,
+            integral_scale,
+            derivative_s: None,
+        };
+        let derivative_s = self.derivative_s.map(|found| known_derivative_s(found, &law));
+        Some(McpLaw { derivative_s: derivative_s.filter(|found| *found != law.derivative_s()), ..law })
     }
 
     /// When the loop computes: by what I sums, by the step of the unfiltered speed, or by both. Gains may be scaled as P is, or I alone.
@@ -162,6 +175,19 @@ impl LawFindings {
         }
     }
 
+    /// What a position D multiplies the change in; `None` where it was not found, or is neither a tick nor a second.
+    #[must_use]
+    pub fn known_derivative(&self) -> Option<Timing> {
+        let law = self.law(&McpLaw::default(), true)?;
+        let known_s = known_derivative_s(self.derivative_s?, &law);
+        if known_s == 1.0 {
+            return Some(Timing::PerSecond);
+        }
+        let rates = [law.rate_hz].into_iter().chain(RATES_HZ);
+        let rate_hz = rates.into_iter().find(|rate_hz| 1.0 / f64::from(*rate_hz) == known_s)?;
+        Some(Timing::PerTick { rate_hz })
+    }
+
     /// Whether a P register of 65536 is a gain of 1.
     #[must_use]
     pub fn is_proportional_known(&self) -> bool {
@@ -200,8 +226,8 @@ fn near(found: f64, known: f64) -> bool {
     (found / known - 1.0).abs() < TOLERANCE
 }
 
-/// Looks at the loops of a motor that stands; `start_duty` is the duty that moves it, `held_limits` are the position limits, of a run that
-/// tunes the position. Where the sums do not tell the rate of the loop, the motor creeps to and fro. `None` where the controller reports no duty.
+/// Looks at the loops of a motor that stands; `start_duty` is the duty that moves it, `held_limits` are the position limits. Where the sums do not tell
+/// the rate of the loop, and where the method has a D, the motor creeps to and fro. `None` where the controller reports no duty.
 ///
 /// # Errors
 /// Says why the run ends.
@@ -209,7 +235,8 @@ pub fn probe_law<L: Law>(
     guard: &mut ExperimentGuard<'_, L>,
     write: &dyn Fn(McpWrite) -> L::Write,
     start_duty: f64,
-    held_limits: Option<(i32, i32)>,
+    held_limits: (i32, i32),
+    method: Method,
 ) -> Result<Option<LawFindings>, Cause> {
     let guard = &mut Probed { guard, write };
     let duty = (DUTY_SHARE * start_duty).clamp(DUTY.0, DUTY.1);
@@ -228,15 +255,25 @@ pub fn probe_law<L: Law>(
         }
         integral = if summed < LEAST_SUMMED { INTEGRALS[1] } else { integral * SUMMED / summed };
     }
-    let position_scale = match held_limits {
-        Some(limits) => scale_under(guard, duty, limits)?,
-        None => None,
+    let position_scale = match method {
+        Method::Velocity => None,
+        // Alone it acts on the duty directly.
+        Method::Pd | Method::Pid => scale_under(guard, duty, (0.0, 1.0), held_limits)?,
+        // Over a velocity loop it acts by what that makes of its speed, which is the same where all of a setpoint is fed forward.
+        Method::Piv if near(feed_forward, 1.0) => scale_under(guard, duty, (0.0, 1.0), held_limits)?,
+        Method::Piv => scale_under(guard, duty, (1.0, feed_forward + proportional), held_limits)?,
     };
     guard.set(gains(0.0, 0.0))?;
     let mut found =
         LawFindings { feed_forward, proportional, sums_per_s, position_scale, ..LawFindings::default() };
     if !found.tells_rate() {
         found.speed_step = rate_under(guard, start_duty)?;
+    }
+    if matches!(method, Method::Pd | Method::Pid)
+        && let (Some(scale), Some(law)) = (position_scale, found.law(&McpLaw::default(), true))
+    {
+        found.derivative_s = derivative_under(guard, start_duty, scale, held_limits, f64::from(law.rate_hz))?;
+        guard.set(gains(0.0, 0.0))?;
     }
     Ok(Some(found))
 }
@@ -273,37 +310,6 @@ fn proportional_under<L: Law>(
         }
     }
     Ok(Some(found))
-}
-
-/// The motor with its loops as this law writes them.
-struct Probed<'p, 'g, L: Law> {
-    guard: &'p mut ExperimentGuard<'g, L>,
-    write: &'p dyn Fn(McpWrite) -> L::Write,
-}
-
-impl<L: Law> Probed<'_, '_, L> {
-    fn set(&mut self, registers: McpWrite) -> Result<(), Cause> {
-        self.guard.write((self.write)(registers))
-    }
-}
-
-impl<'g, L: Law> std::ops::Deref for Probed<'_, 'g, L> {
-    type Target = ExperimentGuard<'g, L>;
-
-    fn deref(&self) -> &Self::Target {
-        self.guard
-    }
-}
-
-impl<L: Law> std::ops::DerefMut for Probed<'_, '_, L> {
-    fn deref_mut(&mut self) -> &mut Self::Target {
-        self.guard
-    }
-}
-
-fn gains(p: f64, i: f64) -> McpWrite {
-    let (p, i) = ((p * VELOCITY_SCALE) as u32, (i * VELOCITY_SCALE).round() as u32);
-    McpWrite::Velocity(VelocityRegisters { p, i, d: 0, qpps: QPPS as u32 })
 }
 
 /// The middle of the duties under a speed command.
@@ -349,15 +355,17 @@ fn under<L: Law>(
     Ok(guard.points.iter().copied().filter(|p| p.duty.is_some_and(|duty| duty.0 > from_s)).collect())
 }
 
-/// The position scale: P alone acts on the duty directly (MCP manual 2.4.7).
+/// The position scale, with what P of the velocity loop is and what duty a speed makes then: with none, P of the position acts on the duty directly
+/// (MCP manual 2.4.7).
 fn scale_under<L: Law>(
     guard: &mut Probed<'_, '_, L>,
     duty: f64,
+    (velocity_p, share): (f64, f64),
     limits: (i32, i32),
 ) -> Result<Option<f64>, Cause> {
-    let p = (1.6 * duty * QPPS * SCALES[0] / ERROR_COUNTS).round();
+    let p = (1.6 * duty * QPPS * SCALES[0] / (share * ERROR_COUNTS)).round();
     for larger in [1.0, LARGER, LARGER * LARGER] {
-        let found = scale_with(guard, larger * p, limits)?;
+        let found = scale_with(guard, larger * p, velocity_p, limits)?.map(|scale| scale * share);
         // With less than this the duty is too small to be read well.
         if found.is_some_and(|scale| scale < 0.5 * LARGER * larger * SCALES[0]) {
             return Ok(found);
@@ -370,10 +378,11 @@ fn scale_under<L: Law>(
 fn scale_with<L: Law>(
     guard: &mut Probed<'_, '_, L>,
     p: f64,
+    velocity_p: f64,
     (min, max): (i32, i32),
 ) -> Result<Option<f64>, Cause> {
     let (min, max) = if min < max { (min, max) } else { (i32::MIN / 2, i32::MAX / 2) };
-    guard.set(gains(0.0, 0.0))?;
+    guard.set(gains(velocity_p, 0.0))?;
     let registers = PositionRegisters { p: p as u32, min, max, ..PositionRegisters::default() };
     guard.set(McpWrite::PositionLoop(registers))?;
     guard.poll(false)?;
@@ -408,7 +417,7 @@ mod tests {
             proportional: 0.99,
             sums_per_s: 303.0,
             position_scale: Some(1030.0),
-            speed_step: None,
+            ..LawFindings::default()
         };
         assert_eq!(found.law(&usual, true), Some(usual));
         let other =
@@ -435,7 +444,7 @@ mod tests {
             proportional: 1.0,
             sums_per_s: 300.0,
             position_scale: Some(1024.0),
-            speed_step: None,
+            ..LawFindings::default()
         };
         let law = |findings: LawFindings| findings.law(&usual, true).expect("all of it was measured");
         assert_eq!(law(LawFindings { feed_forward: 0.5, ..found }), McpLaw { feed_forward: 0.5, ..usual });

@@ -11,7 +11,7 @@ pub const VELOCITY_SCALE: f64 = 65_536.0;
 /// The firmware's law, as far as the tuner must know it.
 ///
 /// Assumed, since none of it is public: `duty = (feed_forward v + P e + I sum(e) + D diff(e)) / QPPS`. A run measures its figures, but
-/// for the scale of D, which is taken to be that of P.
+/// for the velocity's D, which no gains of ours use: its scale is taken to be that of P.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct McpLaw {
     /// Loop rate, Hz.
@@ -29,6 +29,9 @@ pub struct McpLaw {
     /// Wire value of a velocity I that adds the error once per tick, or per second.
     #[serde(default = "usual_scale", skip_serializing_if = "is_usual_scale")]
     pub integral_scale: f64,
+    /// Seconds that a position D of 1 multiplies the speed with, where that is not what I counts by.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub derivative_s: Option<f64>,
 }
 
 fn usual_scale() -> f64 {
@@ -78,11 +81,18 @@ impl Default for McpLaw {
             feed_forward: 1.0,
             velocity_scale: VELOCITY_SCALE,
             integral_scale: VELOCITY_SCALE,
+            derivative_s: None,
         }
     }
 }
 
 impl McpLaw {
+    /// Seconds that a position D of 1 multiplies the speed with.
+    #[must_use]
+    pub fn derivative_s(&self) -> f64 {
+        self.derivative_s.unwrap_or_else(|| self.tick_s() / self.gain_step())
+    }
+
     /// Seconds that one unit of the integral or derivative stands for.
     fn gain_step(&self) -> f64 {
         if self.per_tick { 1.0 } else { self.tick_s() }
@@ -181,7 +191,8 @@ pub fn velocity_gains(registers: &VelocityRegisters, law: &McpLaw) -> Pid {
 #[must_use]
 pub fn position_registers(gains: &Gains, law: &McpLaw, travel: (i32, i32)) -> PositionRegisters {
     let position = gains.position.unwrap_or_default();
-    let [p, i, d] = per_step(&position, law).map(|gain| raw(gain, law.position_scale));
+    let [p, i, _] = per_step(&position, law).map(|gain| raw(gain, law.position_scale));
+    let d = raw(position.d / law.derivative_s(), law.position_scale);
     // The integral is a sum over ticks where gains count per tick.
     let max_i = whole(gains.max_integral * law.gain_step() / law.tick_s());
     PositionRegisters { p, i, d, max_i, deadzone: whole(gains.deadzone_counts), min: travel.0, max: travel.1 }
@@ -198,7 +209,7 @@ pub fn gains_of(velocity: &VelocityRegisters, position: &PositionRegisters, law:
         position: Some(Pid {
             p: scaled(position.p),
             i: scaled(position.i) / step_s,
-            d: scaled(position.d) * step_s,
+            d: scaled(position.d) * law.derivative_s(),
         }),
         max_integral: f64::from(position.max_i) * step_s,
         deadzone_counts: f64::from(position.deadzone),

@@ -70,13 +70,17 @@ fn law_of(examination: &Examination, unlike: &mut Vec<String>) -> ControlLaw {
     let base = if rate_hz == Some(625) { ControlLaw::at_625_hz() } else { usual };
     let rate_hz = rate_hz.unwrap_or(usual.rate_hz);
     let step = found("speed_step").and_then(Value::as_f64).filter(|step| *step > 0.0);
-    let gain_timing = match timing.and_then(|timing| timing["per_tick"].as_bool()) {
-        Some(false) => GainTiming::PerSecond,
-        Some(true) | None => usual.gain_timing,
+    let per_tick = |answer: Option<&Value>| match answer.and_then(|timing| timing["per_tick"].as_bool()) {
+        Some(false) => Some(GainTiming::PerSecond),
+        Some(true) => Some(GainTiming::PerTick),
+        None => None,
     };
+    let gain_timing = per_tick(timing).unwrap_or(usual.gain_timing);
+    let derivative_timing = per_tick(found("derivative")).filter(|timing| *timing != gain_timing);
     for (key, what) in [
         ("loop_rate", "at which rate its loop runs, and over what I sums"),
         ("position_scale", "the scale of its position gains"),
+        ("derivative", "over which time D takes a change"),
         ("feed_forward", "whether it adds the feed-forward"),
         ("speed_step", "over which time it counts the unfiltered speed"),
     ] {
@@ -87,6 +91,7 @@ fn law_of(examination: &Examination, unlike: &mut Vec<String>) -> ControlLaw {
     ControlLaw {
         rate_hz,
         gain_timing,
+        derivative_timing,
         position_gain_scale: found("position_scale")
             .and_then(Value::as_f64)
             .unwrap_or(usual.position_gain_scale),

@@ -79,6 +79,8 @@ impl Unit for ControlLaw {
             feed_forward: f64::from(u8::from(specimen.unit.feed_forward)),
             ..McpLaw::default()
         };
+        let of_derivative = |timing| if timing == GainTiming::PerTick { law.tick_s() } else { 1.0 };
+        let law = McpLaw { derivative_s: specimen.unit.derivative_timing.map(of_derivative), ..law };
         let filter_s = match specimen.unit.velocity_estimate {
             VelocityEstimate::LowPass { time_constant_s } => time_constant_s,
             VelocityEstimate::LastTick => 0.0,

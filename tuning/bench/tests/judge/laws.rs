@@ -26,6 +26,15 @@ fn laws() -> Vec<(&'static str, ControlLaw)> {
         ("450 Hz", ControlLaw { rate_hz: 450, ..usual }),
         ("position gains x 65536", ControlLaw { position_gain_scale: 65_536.0, ..usual }),
         ("per second", ControlLaw { gain_timing: GainTiming::PerSecond, ..usual }),
+        ("D alone per second", ControlLaw { derivative_timing: Some(GainTiming::PerSecond), ..usual }),
+        (
+            "I alone per second",
+            ControlLaw {
+                gain_timing: GainTiming::PerSecond,
+                derivative_timing: Some(GainTiming::PerTick),
+                ..usual
+            },
+        ),
         ("position gains x 2048", ControlLaw { position_gain_scale: 2048.0, ..usual }),
         ("without feed-forward", ControlLaw { feed_forward: false, ..usual }),
         (
@@ -57,6 +66,8 @@ fn each_law_is_found_and_its_gains_hold_on_the_true_plant() {
                 let scale = found.position_scale / truth.law.position_scale;
                 assert!((scale - 1.0).abs() < 0.04, "{case}");
             }
+            let derivative = found.derivative_s() / truth.law.derivative_s();
+            assert!(method != Method::Pd || (derivative - 1.0).abs() < 0.04, "{case}");
             let optimum = Optimum { cost: 1.0, duty_rms: 0.08, gains: Gains::default() };
             let judged = judge_report(&under_test, &optimum, &report);
             assert!(judged.accept, "{case}: {judged:?}");

@@ -10,6 +10,8 @@ use brushwork_tuning::law_probe::find_law;
 use brushwork_values::Motor;
 use serde_json::json;
 
+/// What the law probe answers.
+const LOOPS: [&str; 5] = ["feed_forward", "proportional", "loop_rate", "position_scale", "derivative"];
 /// Highest duty: that of the wiring probe.
 const MAX_DUTY: f64 = 0.45;
 /// Longest run, s.
@@ -28,7 +30,7 @@ pub fn ask(motor: Motor, context: &mut JobContext<'_>, found: &mut Examination) 
     match law {
         Err(cause) => {
             let why = format!("The motor could not be looked at. {}", cause.sentence());
-            for key in ["feed_forward", "proportional", "loop_rate", "position_scale", "speed_step"] {
+            for key in LOOPS.into_iter().chain(["speed_step"]) {
                 found.unclear(key, why.clone());
             }
         }
@@ -38,7 +40,7 @@ pub fn ask(motor: Motor, context: &mut JobContext<'_>, found: &mut Examination) 
                 Some(findings) => enter(found, &findings, law.speed_step),
                 None => {
                     let why = "The controller reports no duty, so that nothing is known of its loops.";
-                    for key in ["feed_forward", "proportional", "loop_rate", "position_scale"] {
+                    for key in LOOPS {
                         found.unclear(key, why);
                     }
                 }
@@ -105,4 +107,25 @@ fn enter(found: &mut Examination, findings: &LawFindings, step: Option<f64>) {
         None => found.unclear("position_scale", "The position loop gave no duty, or one of another scale."),
     }
     found.measured("position_scale", json!({ "scale": findings.position_scale }));
+    derivative(found, findings);
+}
+
+fn derivative(found: &mut Examination, findings: &LawFindings) {
+    match (findings.known_derivative(), findings.derivative_s) {
+        (Some(Timing::PerSecond), _) => {
+            found.answered(
+                "derivative",
+                json!({ "per_tick": false }),
+                "D multiplies the change in a second.",
+            );
+        }
+        (Some(Timing::PerTick { .. }), _) => {
+            found.answered("derivative", json!({ "per_tick": true }), "D multiplies the change in a tick.");
+        }
+        (None, Some(_)) => found.unclear("derivative", "D multiplies the change in some other time."),
+        (None, None) => {
+            found.unclear("derivative", "There was no room to creep, or D could not be read well.");
+        }
+    }
+    found.measured("derivative", json!({ "seconds": findings.derivative_s }));
 }

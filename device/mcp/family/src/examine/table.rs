@@ -120,8 +120,8 @@ pub static STEPS: &[Step] = &[
         key: MOTOR,
         title: "look at the loops of a motor",
         need: Need::Move,
-        does: "The motor turns: a duty that grows until it moves, half a second of creeping forward and as much back, and then short commands \
-               below the duty that moves it. It must be free to turn a little both ways. Gains are written meanwhile and put back.",
+        does: "The motor turns: a duty that grows until it moves, half a second of creeping forward and as much back, short commands \
+               below the duty that moves it, and two or three moves of less than half a second. It must be free to turn a little both ways. Gains are written meanwhile and put back.",
         touches: &[],
         questions: &[
             q(
@@ -139,6 +139,11 @@ pub static STEPS: &[Step] = &[
                 "position_scale",
                 "Is a position gain of 1 the wire value 1024 or 2048?",
                 "A position 60 counts away with P alone, velocity gains at 0; the duty that comes of it.",
+            ),
+            q(
+                "derivative",
+                "Does a position D multiply the change in a tick or in a second (assumed: as I sums)?",
+                "A position far away with a small P, without D and with it; what D takes from the duty of the creeping motor.",
             ),
             q(
                 "speed_step",
@@ -198,7 +203,10 @@ const EEPROM: &str = "It takes power cuts or many writes of the EEPROM.";
 
 /// What is assumed, file by file.
 pub static ASSUMED: &[Assumed] = &[
-    Assumed::asked("axis/src/registers.rs", &["feed_forward", "proportional", "loop_rate", "position_scale"]),
+    Assumed::asked(
+        "axis/src/registers.rs",
+        &["feed_forward", "proportional", "loop_rate", "position_scale", "derivative"],
+    ),
     Assumed::not("client/src/can/master.rs", "That node id 127 is free.", BUS),
     Assumed::not(
         "client/src/controller/arming.rs",

@@ -1,0 +1,199 @@
+//! What D of the position loop multiplies, read off the duty that it takes from P's while the motor creeps.
+//!
+//! At a standstill D gives nothing, so the motor has to turn. A target far away makes P a duty that is nearly constant; what is missing from it
+//! over the speed of the counts is D, whether it is counted per tick or per second. Weak registers are tried first, so that D never throws the motor.
+
+use crate::probed::{Probed, QPPS, RATES_HZ, gains};
+use crate::registers::{McpLaw, McpWrite, PositionRegisters};
+use brushwork_tuning::cause::Cause;
+use brushwork_tuning::law::Law;
+
+/// Duty above the starting one at which the motor creeps.
+const CREEP_DUTY: f64 = 0.04;
+/// How long it creeps at the most, and from when on readings count, s: the motor has to have gathered its speed.
+const CREEP_S: f64 = 0.4;
+const SETTLED_S: f64 = 0.1;
+/// The target lies so many times as far away as the motor creeps, and how far that is on an axis that turns freely, counts.
+const FAR: f64 = 8.0;
+const FREE_COUNTS: f64 = 100_000.0;
+/// Position limits of an axis that has none, counts.
+const UNLIMITED: i32 = 1 << 30;
+/// How far the motor has to have come while readings counted, counts, and how many of them there have to be.
+const LEAST_COUNTS: f64 = 12.0;
+const LEAST_READINGS: usize = 6;
+/// How long the motor may coast, s, what of its speed is slow, and what of a travel it may take for that.
+const COAST_S: f64 = 1.0;
+const SLOW: f64 = 0.02;
+const MOST_OF_ROOM: f64 = 0.1;
+/// The duty that D is to take away, the most that one count in one tick may make, and the smallest share of the former that is read well.
+const TAKEN_DUTY: f64 = 0.012;
+const MOST_KICK: f64 = 0.05;
+const LEAST_SHARE: f64 = 0.25;
+/// The scale of P has to hold while the motor turns, too: how far off the duty may be without D.
+const P_TOLERANCE: f64 = 0.06;
+/// A finding within such a factor of one tick or of one second is taken to be that. D may make a pulse of each count, of which polls see few.
+const KNOWN_WITHIN: f64 = 1.7;
+
+/// Seconds that a D register of the position's scale multiplies the speed with; `None` where there is no room to creep, or it was not read well.
+pub(crate) fn derivative_under<L: Law>(
+    guard: &mut Probed<'_, '_, L>,
+    start_duty: f64,
+    scale: f64,
+    limits: (i32, i32),
+    rate_hz: f64,
+) -> Result<Option<f64>, Cause> {
+    guard.set(gains(0.0, 0.0))?;
+    guard.poll(false)?;
+    let here = guard.points.last().map_or(0.0, |point| point.counts);
+    let Some(creep) = Creep::from(here, guard.origin_counts() as f64, guard.room_counts(), limits) else {
+        return Ok(None);
+    };
+    guard.progress("Reading what D takes from the duty while the motor creeps");
+    let duty = start_duty + CREEP_DUTY;
+    let mut creeps = |direction: f64, d: f64| {
+        let turned = creep.run(guard, (direction, duty), scale, d);
+        coast(guard)?;
+        turned
+    };
+    let Some(plain) = creeps(creep.direction, 0.0)? else { return Ok(None) };
+    if (plain.missing_duty / duty).abs() > P_TOLERANCE {
+        return Ok(None);
+    }
+    // Registers, were D counted per second; a register that takes nothing away then is tried as one counted per tick.
+    let per_second = (TAKEN_DUTY / plain.speed).min(MOST_KICK / rate_hz) * QPPS * scale;
+    let mut direction = -creep.direction;
+    for d in [per_second, per_second * rate_hz] {
+        let d = d.round().clamp(1.0, f64::from(i32::MAX));
+        let Some(turned) = creeps(direction, d)? else { return Ok(None) };
+        let found = turned.missing_duty * QPPS * scale / (d * turned.speed);
+        if turned.missing_duty > LEAST_SHARE * TAKEN_DUTY.min(MOST_KICK * plain.speed / rate_hz) {
+            return Ok(Some(found));
+        }
+        direction = -direction;
+    }
+    Ok(None)
+}
+
+/// Lets the motor come to rest by itself: braking shakes a springy joint. Where that takes too much of a travel it is braked.
+fn coast<L: Law>(guard: &mut Probed<'_, '_, L>) -> Result<(), Cause> {
+    let speed = guard.recent_speed(2).unwrap_or(0.0).abs();
+    let longest_s = guard.monitor.tau_bounds_s.map_or(f64::INFINITY, |tau| tau.1);
+    if guard.room_counts().is_some_and(|room| speed * longest_s > MOST_OF_ROOM * room) {
+        return guard.come_to_rest();
+    }
+    guard.duty(0.0)?;
+    let until_s = guard.now_s() + COAST_S;
+    while guard.now_s() < until_s {
+        guard.poll(false)?;
+        if guard.recent_speed(6).is_some_and(|now| now.abs() <= SLOW * speed) {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// What is found as what it is taken to be: one tick, one second, or itself. A step of the speed over two ticks tells half the rate of the loop.
+pub(crate) fn known_derivative_s(found: f64, law: &McpLaw) -> f64 {
+    let ticks = [law.rate_hz].into_iter().chain(RATES_HZ).map(|rate_hz| 1.0 / f64::from(rate_hz));
+    let off = |known: f64| (found / known).ln().abs();
+    let nearest = ticks.chain([1.0]).min_by(|a, b| off(*a).total_cmp(&off(*b)));
+    nearest.filter(|known| off(*known) < KNOWN_WITHIN.ln()).unwrap_or(found)
+}
+
+/// Where the motor may creep.
+struct Creep {
+    /// The side with more room.
+    direction: f64,
+    /// How far it may go.
+    counts: f64,
+    /// Counts from the start of the run that the target has to stay within.
+    limits: (f64, f64),
+    registers: PositionRegisters,
+}
+
+/// What a creep has shown.
+struct Turned {
+    /// Counts/s, positive.
+    speed: f64,
+    /// By how much the duty is less than P makes it.
+    missing_duty: f64,
+}
+
+impl Creep {
+    fn from(here: f64, origin: f64, room: Option<f64>, (min, max): (i32, i32)) -> Option<Self> {
+        let (min, max) = if min < max { (min, max) } else { (-UNLIMITED, UNLIMITED) };
+        let limits = (f64::from(min) - origin, f64::from(max) - origin);
+        let (below, above) = (here - limits.0, limits.1 - here);
+        let counts = room.map_or(FREE_COUNTS, |room| room / FAR).min(below.max(above) / FAR);
+        let direction = if above >= below { 1.0 } else { -1.0 };
+        let registers = PositionRegisters { min, max, ..PositionRegisters::default() };
+        (counts >= 2.0 * LEAST_COUNTS).then_some(Self { direction, counts, limits, registers })
+    }
+
+    fn run<L: Law>(
+        &self,
+        guard: &mut Probed<'_, '_, L>,
+        (direction, duty): (f64, f64),
+        scale: f64,
+        d: f64,
+    ) -> Result<Option<Turned>, Cause> {
+        let from = guard.points.last().map_or(0.0, |point| point.counts);
+        let target = (from + direction * FAR * self.counts).clamp(self.limits.0, self.limits.1).round();
+        let error = direction * (target - from);
+        if error < self.counts {
+            return Ok(None);
+        }
+        let p = (duty * QPPS * scale / error).round();
+        let registers = PositionRegisters { p: p as u32, d: d as u32, ..self.registers };
+        guard.set(McpWrite::PositionLoop(registers))?;
+        guard.position(target, QPPS as u32)?;
+        let (start_s, first) = (guard.now_s(), guard.points.len());
+        while guard.now_s() < start_s + CREEP_S {
+            let point = guard.poll(true)?;
+            if point.is_some_and(|point| (point.counts - from).abs() > self.counts) {
+                break;
+            }
+        }
+        let seen = guard.points.get(first..).unwrap_or_default();
+        let settled = || seen.iter().filter(|point| point.t > start_s + SETTLED_S);
+        let (Some(begin), Some(end)) = (settled().next(), settled().next_back()) else { return Ok(None) };
+        let came = direction * (end.counts - begin.counts);
+        let missing: Vec<f64> = settled()
+            .filter_map(|point| {
+                let by_p = p * direction * (target - point.counts) / (scale * QPPS);
+                point.duty.map(|(_, read)| by_p - direction * read)
+            })
+            .collect();
+        if missing.len() < LEAST_READINGS || came < LEAST_COUNTS || end.t <= begin.t {
+            return Ok(None);
+        }
+        let missing_duty = missing.iter().sum::<f64>() / missing.len() as f64;
+        Ok(Some(Turned { speed: came / (end.t - begin.t), missing_duty }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_finding_near_a_tick_or_a_second_is_that() {
+        let law = McpLaw { rate_hz: 625, ..McpLaw::default() };
+        assert_eq!(known_derivative_s(0.0014, &law), 0.0016);
+        assert_eq!(known_derivative_s(0.0035, &law), 1.0 / 300.0);
+        assert_eq!(known_derivative_s(0.0017, &McpLaw { rate_hz: 312, ..law }), 0.0016);
+        assert_eq!(known_derivative_s(1.3, &law), 1.0);
+        assert_eq!(known_derivative_s(0.05, &law), 0.05);
+    }
+
+    #[test]
+    fn a_creep_keeps_to_limits_and_travel_and_needs_room() {
+        let free = Creep::from(0.0, 0.0, None, (0, 0)).unwrap();
+        assert_eq!((free.counts, free.direction), (FREE_COUNTS, 1.0));
+        let limited = Creep::from(900.0, 100.0, None, (0, 1_100)).unwrap();
+        assert_eq!((limited.counts, limited.direction), (1_000.0 / FAR, -1.0));
+        let travel = Creep::from(0.0, 0.0, Some(400.0), (0, 0)).unwrap();
+        assert_eq!(travel.counts, 50.0);
+        assert!(Creep::from(0.0, 0.0, Some(100.0), (0, 0)).is_none());
+    }
+}
