@@ -28,6 +28,8 @@ pub struct Manner {
     pub sums_ticks: bool,
     /// Whether the position's D takes differences of ticks, or of seconds.
     pub derives_ticks: bool,
+    /// Filter on what the position's D takes, s.
+    pub derivative_filter_s: f64,
     /// How much of the setpoint itself goes into the duty.
     pub feed_forward: f64,
     /// Whether currents are told; else they are 0.
@@ -53,6 +55,7 @@ impl Default for Manner {
             tick_hz: 300.0,
             sums_ticks: true,
             derives_ticks: true,
+            derivative_filter_s: 0.0,
             feed_forward: 1.0,
             tells_current: true,
             tells_status: true,
@@ -132,6 +135,7 @@ pub struct OtherController {
     last_count: i64,
     sum: f64,
     before: f64,
+    slope: f64,
     inbox: Vec<u8>,
     byte_at: Duration,
     outbox: VecDeque<(Duration, Vec<u8>)>,
@@ -158,6 +162,7 @@ impl OtherController {
             last_count: 0,
             sum: 0.0,
             before: 0.0,
+            slope: 0.0,
             inbox: Vec::new(),
             byte_at: Duration::ZERO,
             outbox: VecDeque::new(),
@@ -244,7 +249,10 @@ impl OtherController {
                 }
                 let [d, p, ..] = self.position.map(|raw| f64::from(raw) / POSITION_SCALE);
                 let parts = if self.manner.derives_ticks { 1.0 } else { self.manner.tick_hz };
-                let wanted = p * error + d * parts * (error - self.before);
+                let tick_s = 1.0 / self.manner.tick_hz;
+                let share = tick_s / (self.manner.derivative_filter_s + tick_s);
+                self.slope += share * (error - self.before - self.slope);
+                let wanted = p * error + d * parts * self.slope;
                 self.before = error;
                 self.velocity_loop(wanted.clamp(-most, most), speed)
             }
@@ -271,6 +279,7 @@ impl OtherController {
         }
         if let Mode::Position { goal, .. } = mode {
             self.before = goal - self.count() as f64;
+            self.slope = 0.0;
         }
         self.mode = mode;
     }

@@ -132,6 +132,10 @@ impl<A: LeadingLaw, P: LawPart> Law for Both<A, P> {
         of_law!(self.feed_forward())
     }
 
+    fn filters_derivative(&self) -> bool {
+        of_law!(self.filters_derivative())
+    }
+
     fn duty_limit(&self) -> Option<DutyLimit> {
         of_law!(self.duty_limit())
     }

@@ -129,6 +129,10 @@ pub trait Law:
     }
     /// How much of the setpoint over QPPS is added to the duty: 1 is all of it.
     fn feed_forward(&self) -> f64;
+    /// Whether the derivative of a position sees the filtered speed of the velocity loop.
+    fn filters_derivative(&self) -> bool {
+        false
+    }
     /// The limit of the duty by which the current is held, where it is not the current itself that is limited.
     fn duty_limit(&self) -> Option<DutyLimit> {
         None

@@ -265,6 +265,8 @@ fn design<L: LawProbe>(
     };
     guard.progress("Measuring the lag of the loop");
     let task = settle_lag(guard, request, task, report)?;
+    let is_direct = matches!(request.method, Method::Pd | Method::Pid);
+    let task = if is_direct && task.law.filters_derivative() { filtered(task) } else { task };
     let task = if request.method == Method::Pid {
         with_backlash(guard, request, task, probe, report)?
     } else {
@@ -507,6 +509,13 @@ fn unfiltered<L: Law>(task: Task<L>) -> Task<L> {
     let noise = |lag| of(lag).margins(&proportional, task.qpps).noise_duty;
     let louder = noise(Lag { filter_s: 0.0, ..task.lag }) / noise(task.lag).max(f64::MIN_POSITIVE);
     Task { noise_factor: task.noise_factor * louder.max(1.0), ..task }
+}
+
+/// The task of a loop on the position whose derivative sees the filtered speed: what the filter takes is a delay of that loop, too.
+fn filtered<L: Law>(task: Task<L>) -> Task<L> {
+    let tick_s = task.law.tick_s();
+    let as_delay = |lag: Lag| Lag { filter_s: 0.0, delay_ticks: lag.delay_ticks + lag.filter_s / tick_s };
+    Task { lag: as_delay(task.lag), worst_lag: as_delay(task.worst_lag), ..task }
 }
 
 fn with_lag<L: Law>(task: Task<L>, found: &LagFit) -> Task<L> {

@@ -284,6 +284,7 @@ fn the_position_loop_of_another_controller_is_measured_and_not_guessed() {
         (Method::Pd, Manner { sums_ticks: false, ..usual.clone() }),
         (Method::Pd, Manner { derives_ticks: false, ..usual.clone() }),
         (Method::Pd, Manner { sums_ticks: false, derives_ticks: false, tick_hz: 625.0, ..usual.clone() }),
+        (Method::Pid, Manner { derivative_filter_s: 0.010, ..usual.clone() }),
         (Method::Piv, Manner { feed_forward: 0.0, ..usual.clone() }),
         (Method::Piv, Manner { feed_forward: 0.5, ..usual.clone() }),
     ];
@@ -296,7 +297,8 @@ fn the_position_loop_of_another_controller_is_measured_and_not_guessed() {
         assert!((law.position_scale / 1024.0 - 1.0).abs() < 0.04, "{law:?} {case}");
         assert!((law.feed_forward - manner.feed_forward).abs() < 0.04, "{law:?} {case}");
         let of_d_s = if manner.derives_ticks { 1.0 / manner.tick_hz } else { 1.0 };
-        let is_asked = method == Method::Pd;
+        let is_asked = method != Method::Piv;
+        assert_eq!(law.filters_derivative, manner.derivative_filter_s > 0.0, "{law:?} {case}");
         assert!(!is_asked || (law.derivative_s() / of_d_s - 1.0).abs() < 0.04, "{law:?} {case}");
     }
 }

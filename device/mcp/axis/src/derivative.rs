@@ -6,6 +6,7 @@
 use crate::probed::{Probed, QPPS, RATES_HZ, gains};
 use crate::registers::{McpLaw, McpWrite, PositionRegisters};
 use brushwork_tuning::cause::Cause;
+use brushwork_tuning::experiment_guard::Point;
 use brushwork_tuning::law::Law;
 
 /// Duty above the starting one at which the motor creeps.
@@ -31,17 +32,32 @@ const MOST_KICK: f64 = 0.05;
 const LEAST_SHARE: f64 = 0.25;
 /// The scale of P has to hold while the motor turns, too: how far off the duty may be without D.
 const P_TOLERANCE: f64 = 0.06;
+/// The shortest tick that is believed to be a second's part and no second, s. Differences of whole counts have to make so much, counts squared, and be read so often.
+const MOST_TICK_S: f64 = 0.02;
+const LEAST_ROUGH: f64 = 0.06;
+const ENOUGH_FOR_ROUGHNESS: usize = 12;
+/// D's duty is that of a filtered speed below such a share of what differences of whole counts make: a filter of one tick leaves three tenths of it, twenty readings
+/// spread by a third.
+pub(crate) const FILTERED: f64 = 0.4;
 /// A finding within such a factor of one tick or of one second is taken to be that. D may make a pulse of each count, of which polls see few.
 const KNOWN_WITHIN: f64 = 1.7;
 
-/// Seconds that a D register of the position's scale multiplies the speed with; `None` where there is no room to creep, or it was not read well.
+/// What was found of D.
+pub(crate) struct DerivativeFound {
+    /// Seconds that a D register of the position's scale multiplies the speed with.
+    pub seconds: f64,
+    /// How rough its duty is over what differences of whole counts make it.
+    pub roughness: Option<f64>,
+}
+
+/// What D multiplies, and whether it sees a filtered speed; `None` where there is no room to creep, or it was not read well.
 pub(crate) fn derivative_under<L: Law>(
     guard: &mut Probed<'_, '_, L>,
     start_duty: f64,
     scale: f64,
     limits: (i32, i32),
     rate_hz: f64,
-) -> Result<Option<f64>, Cause> {
+) -> Result<Option<DerivativeFound>, Cause> {
     guard.set(gains(0.0, 0.0))?;
     guard.poll(false)?;
     let here = guard.points.last().map_or(0.0, |point| point.counts);
@@ -67,7 +83,9 @@ pub(crate) fn derivative_under<L: Law>(
         let Some(turned) = creeps(direction, d)? else { return Ok(None) };
         let found = turned.missing_duty * QPPS * scale / (d * turned.speed);
         if turned.missing_duty > LEAST_SHARE * TAKEN_DUTY.min(MOST_KICK * plain.speed / rate_hz) {
-            return Ok(Some(found));
+            // A D per tick tells the rate of the loop itself.
+            let rate_hz = if found < MOST_TICK_S { 1.0 / found } else { rate_hz };
+            return Ok(Some(DerivativeFound { seconds: found, roughness: turned.roughness(rate_hz) }));
         }
         direction = -direction;
     }
@@ -117,6 +135,22 @@ struct Turned {
     speed: f64,
     /// By how much the duty is less than P makes it.
     missing_duty: f64,
+    /// By how much that scatters about what the speed takes, as variance, and the speeds that it was read at, counts/s.
+    scatter: f64,
+    speeds: Vec<f64>,
+}
+
+impl Turned {
+    /// How rough D's duty is over what differences of whole counts make it: 1 where D sees the counts of a tick, much less where it sees a filtered speed. `None` where whole
+    /// counts make nearly no difference.
+    fn roughness(&self, rate_hz: f64) -> Option<f64> {
+        let per_tick = |speed: &f64| (speed.abs() / rate_hz).rem_euclid(1.0);
+        let shares = self.speeds.iter().map(|speed| per_tick(speed) * (1.0 - per_tick(speed)));
+        let expected = shares.sum::<f64>() / self.speeds.len().max(1) as f64;
+        let of_a_count = self.missing_duty * rate_hz / self.speed;
+        let is_told = expected > LEAST_ROUGH && self.speeds.len() >= ENOUGH_FOR_ROUGHNESS;
+        is_told.then(|| self.scatter / (expected * of_a_count.powi(2)))
+    }
 }
 
 impl Creep {
@@ -168,7 +202,19 @@ impl Creep {
             return Ok(None);
         }
         let missing_duty = missing.iter().sum::<f64>() / missing.len() as f64;
-        Ok(Some(Turned { speed: came / (end.t - begin.t), missing_duty }))
+        let speed = came / (end.t - begin.t);
+        let settled: Vec<Point> = settled().copied().collect();
+        let (mut scatter, mut speeds) = (0.0, Vec::new());
+        for around in settled.windows(3) {
+            let Some((_, read)) = around[1].duty else { continue };
+            let by_p = p * direction * (target - around[1].counts) / (scale * QPPS);
+            let here =
+                direction * (around[2].counts - around[0].counts) / (around[2].t - around[0].t).max(1e-6);
+            scatter += (by_p - direction * read - missing_duty * here / speed).powi(2);
+            speeds.push(here);
+        }
+        let scatter = scatter / speeds.len().max(1) as f64;
+        Ok(Some(Turned { speed, missing_duty, scatter, speeds }))
     }
 }
 
@@ -184,6 +230,18 @@ mod tests {
         assert_eq!(known_derivative_s(0.0017, &McpLaw { rate_hz: 312, ..law }), 0.0016);
         assert_eq!(known_derivative_s(1.3, &law), 1.0);
         assert_eq!(known_derivative_s(0.05, &law), 0.05);
+    }
+
+    #[test]
+    fn a_filtered_derivative_is_told_by_its_smooth_duty() {
+        // 450 counts/s at 300 Hz are one count in a tick or two: the duty of D jumps by one count's.
+        let of = |scatter| Turned { speed: 450.0, missing_duty: 0.015, scatter, speeds: vec![450.0; 20] };
+        let of_a_count = 0.015 * 300.0 / 450.0_f64;
+        let rough = of(0.25 * of_a_count.powi(2)).roughness(300.0).unwrap();
+        assert!((rough - 1.0).abs() < 1e-9, "{rough}");
+        assert!(of(0.02 * of_a_count.powi(2)).roughness(300.0).unwrap() < FILTERED);
+        let whole = Turned { speeds: vec![600.0; 20], ..of(0.0) };
+        assert_eq!(whole.roughness(300.0), None, "two counts in every tick tell nothing");
     }
 
     #[test]

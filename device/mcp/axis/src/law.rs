@@ -36,6 +36,10 @@ impl Law for McpLaw {
         self.rate_hz
     }
 
+    fn filters_derivative(&self) -> bool {
+        self.filters_derivative
+    }
+
     fn feed_forward(&self) -> f64 {
         self.feed_forward
     }

@@ -4,7 +4,7 @@
 //! back (command 48) then says what that gain is multiplied with: whether the setpoint's share of QPPS is added, the scale of P, how
 //! fast I sums up, the scale of the position gains. The motor stays where it is, so this needs no travel.
 
-use crate::derivative::{derivative_under, known_derivative_s};
+use crate::derivative::{FILTERED, derivative_under, known_derivative_s};
 use crate::probed::{Probed, QPPS, RATES_HZ, gains};
 use crate::registers::{McpLaw, McpWrite, PositionRegisters, VELOCITY_SCALE};
 use brushwork_tuning::cause::Cause;
@@ -63,6 +63,9 @@ pub struct LawFindings {
     /// Seconds that a position D of 1 multiplies the speed with, where the method has one and it could be read.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub derivative_s: Option<f64>,
+    /// How rough the duty of that D is over what differences of whole counts make it, where that could be read.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub derivative_roughness: Option<f64>,
     /// The step of the unfiltered speed, counts/s, where the sums do not tell the rate of the loop.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_step: Option<f64>,
@@ -105,6 +108,7 @@ impl LawFindings {
             velocity_scale,
             integral_scale,
             derivative_s: None,
+            filters_derivative: self.derivative_roughness.is_some_and(|rough| rough < FILTERED),
         };
         let derivative_s = self.derivative_s.map(|found| known_derivative_s(found, &law));
         Some(McpLaw { derivative_s: derivative_s.filter(|found| *found != law.derivative_s()), ..law })
@@ -272,7 +276,9 @@ pub fn probe_law<L: Law>(
     if matches!(method, Method::Pd | Method::Pid)
         && let (Some(scale), Some(law)) = (position_scale, found.law(&McpLaw::default(), true))
     {
-        found.derivative_s = derivative_under(guard, start_duty, scale, held_limits, f64::from(law.rate_hz))?;
+        let derivative = derivative_under(guard, start_duty, scale, held_limits, f64::from(law.rate_hz))?;
+        found.derivative_s = derivative.as_ref().map(|derivative| derivative.seconds);
+        found.derivative_roughness = derivative.and_then(|derivative| derivative.roughness);
         guard.set(gains(0.0, 0.0))?;
     }
     Ok(Some(found))

@@ -32,6 +32,14 @@ pub struct McpLaw {
     /// Seconds that a position D of 1 multiplies the speed with, where that is not what I counts by.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub derivative_s: Option<f64>,
+    /// Whether a position D sees the filtered speed of the velocity loop, and no differences of counts.
+    #[serde(default, skip_serializing_if = "is_not")]
+    pub filters_derivative: bool,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
+fn is_not(value: &bool) -> bool {
+    !*value
 }
 
 fn usual_scale() -> f64 {
@@ -82,6 +90,7 @@ impl Default for McpLaw {
             velocity_scale: VELOCITY_SCALE,
             integral_scale: VELOCITY_SCALE,
             derivative_s: None,
+            filters_derivative: false,
         }
     }
 }
