@@ -499,7 +499,8 @@ pub(crate) fn try_position<L: Law>(
         let moved = judge_move(&points, target, target - from, begin + 0.7 * dwell_s, step.abs());
         worst.overshoot = worst.overshoot.max(moved.overshoot);
         worst.ripple = worst.ripple.max(moved.ripple);
-        if request.excitation == Excitation::Free {
+        // A textbook's gains may be slow: less of them would be slower still.
+        if request.excitation == Excitation::Free && request.identification == Identification::Fit {
             let tail = tail_counts(&points, (begin + 0.7 * horizon_s, begin + horizon_s), step.abs());
             worst.ripple = worst.ripple.max(MOST_POSITION_RIPPLE * tail);
         }
