@@ -180,7 +180,9 @@ pub fn check_moves<L: Law>(
             || is_unexplained && unexplained_ms(design.ms) > MOST_MS
             || report.lag.is_some_and(|lag| lag.chi_square > NO_MODEL)
     };
-    if report.design.is_some_and(is_short) {
+    // Where gains can be raised and were not, since a travel had no room for it or a load moves the axis, nothing has shown their margin.
+    let is_unheard = found.is_none() && request.excitation != Excitation::Free && !guard.facts.writes_at_rest;
+    if is_unheard || report.design.is_some_and(is_short) {
         report.causes.push(Cause::MarginUnsure);
     }
     Ok(())

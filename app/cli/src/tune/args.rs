@@ -100,9 +100,9 @@ pub struct PositionArgs {
 pub enum IdentificationArg {
     /// A model fitted to several motions up to full duty; gains searched for on it.
     Fit,
-    /// One step about a duty (--about), never more; gains by SIMC.
+    /// One step about a duty (--about), never more, to and fro within --travel; gains by SIMC.
     Step,
-    /// A relay about the speed of a duty (--about), never more; gains by Tyreus-Luyben.
+    /// A relay about the speed of a duty (--about), never more, within --travel about where the axis stands; gains by Tyreus-Luyben.
     Relay,
     /// The controller's own relay test about that speed, beside a fitted model; gains by Tyreus-Luyben. Simulated MCPs and RoboClaws only: how a real one
     /// does it is not public.

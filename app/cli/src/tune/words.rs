@@ -9,7 +9,7 @@ use brushwork_tuning::promise::Promise;
 use brushwork_tuning::registers::RegisterTable as _;
 use brushwork_tuning::report::Verdict;
 use brushwork_tuning::stability::StabilityMargins;
-use brushwork_tuning::tune::Identification;
+use brushwork_tuning::tune::{Identification, Method};
 use brushwork_tuning::whatif::frequency_response;
 use serde_json::{Value, json};
 
@@ -102,9 +102,12 @@ pub fn print(report: &Report, out: &mut Output) -> Result<(), OutputError> {
     for [name, value, doubt] in experiments(report) {
         row(&name, value, doubt.replace('±', "+-"));
     }
-    if let Some(seen) = report.classic.filter(|_| report.request.identification != Identification::Fit) {
-        row("Ku of the loop", format!("{:.3e} duty/(counts/s)", seen.ultimate_gain), String::new());
-        row("Tu of the loop", format!("{:.1} ms", 1e3 * seen.ultimate_period_s), String::new());
+    // A loop that acts on the duty directly has another ultimate point.
+    let has_velocity = matches!(report.request.method, Method::Velocity | Method::Piv);
+    let is_by_rule = report.request.identification != Identification::Fit;
+    if let Some(seen) = report.classic.filter(|_| has_velocity && is_by_rule) {
+        row("Ku of the velocity loop", format!("{:.3e} duty/(counts/s)", seen.ultimate_gain), String::new());
+        row("Tu of the velocity loop", format!("{:.1} ms", 1e3 * seen.ultimate_period_s), String::new());
     }
     if let Some(design) = &report.design {
         if let Some(task) = &report.task {
