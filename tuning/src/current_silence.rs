@@ -13,6 +13,8 @@ pub(crate) const OPEN_S: f64 = 0.2;
 /// open. And at some time, for its silence to give an alarm of any kind its name.
 const CLEARLY: f64 = 2.0;
 const CLEARLY_ONCE: f64 = 2.5;
+/// How many times the lowest duty at which a held motor drew a current another has to be for its silence to count: currents are read in steps.
+const HELD: f64 = 1.5;
 /// Share of a reading in the typical current: some ten readings, a third of a second, make it.
 const NEWEST: f64 = 0.1;
 /// The mean size of readings of no current over their root mean square is 0.8, with a deviation of 0.6 over the root of their number. Up to three of these, and the
@@ -27,6 +29,8 @@ pub(crate) struct CurrentSilence {
     typical_amps: Option<f64>,
     /// Whether a reading ever was clearly more than no current.
     pub(crate) has_been_clear: bool,
+    /// The lowest duty at which a motor that a loop holds was seen to draw clearly more than none.
+    held_duty: Option<f64>,
     /// Readings of no current in a row, oldest first: when, A, and whether the duty had settled. The first
     /// is as old as makes an open motor.
     silent: VecDeque<(f64, f64, bool)>,
@@ -48,6 +52,18 @@ impl CurrentSilence {
                 *typical += NEWEST * (amps - *typical);
             }
         }
+    }
+
+    /// A reading of a motor that a loop holds with a duty.
+    pub(crate) fn see_held(&mut self, duty: f64, amps: f64, most_amps: f64) {
+        if amps > CLEARLY_ONCE * most_amps {
+            self.held_duty = Some(self.held_duty.map_or(duty, |lowest| lowest.min(duty)));
+        }
+    }
+
+    /// Whether a motor that a loop holds with a duty has to draw a current, as it did with a clearly smaller one.
+    pub(crate) fn is_drawn_at(&self, duty: f64) -> bool {
+        self.held_duty.is_some_and(|lowest| duty > HELD * lowest)
     }
 
     /// The motor is not driven.

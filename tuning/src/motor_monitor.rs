@@ -456,7 +456,16 @@ impl MotorMonitor {
     }
 
     fn check_current(&mut self, point: &Point) -> Result<(), Cause> {
-        if self.duty_at(point.t).abs() < self.start_duty + 0.04 {
+        let duty = self.duty_at(point.t).abs();
+        if self.in_loop
+            && let Some(amps) = point.amps
+            && self.is_slow(duty)
+        {
+            self.current.see_held(duty, amps.abs(), self.no_current_amps());
+        }
+        // A loop holds a motor against its friction by less, and that draws a current too if it did before.
+        let is_held = self.in_loop && self.current.is_drawn_at(duty);
+        if duty < self.start_duty + 0.04 && !is_held {
             self.current.rest();
             return Ok(());
         }
@@ -469,6 +478,14 @@ impl MotorMonitor {
             && self.has_to_draw(since_s)
             && !self.goes_on(since_s);
         if is_open { Err(Cause::MotorOpened) } else { Ok(()) }
+    }
+
+    /// Whether the voltage of the turning motor is less than half of a duty: what it draws then is that of a standing one, or nearly.
+    fn is_slow(&self, duty: f64) -> bool {
+        let gain = self.closed_loop.as_ref().map_or(self.gain, |known| known.model().gain_counts_per_s);
+        let mut newest = self.recent.iter().rev();
+        let (Some(to), Some(from)) = (newest.next(), newest.next()) else { return false };
+        (to.counts - from.counts).abs() < 0.5 * duty * gain * (to.t - from.t)
     }
 
     /// Whether the duty since then was so far from the voltage of the turning motor, beyond it or below, that a current had to flow, as far as that voltage is
