@@ -334,6 +334,20 @@ fn a_position_is_not_tuned_without_saying_how_far_the_axis_may_go_nor_by_the_con
         (&["tune", "position", "-c", "sim:mcp266"][..], "--turns-freely"),
         (&["tune", "position", "--method", "step", "-c", "sim:mcp266"], "--turns-freely"),
         (&["tune", "position", "--method", "controller", "-c", "sim:mcp266"], "velocity loop"),
+        (
+            &[
+                "tune",
+                "position",
+                "--method",
+                "step",
+                "--identify",
+                "relay",
+                "--turns-freely",
+                "-c",
+                "sim:mcp266",
+            ],
+            "not by both",
+        ),
     ] {
         let ending = Program::start(BRUSHWORK, arguments).finish(LIMIT);
         assert_eq!(code(&ending), Some(2), "{ending:?}");

@@ -55,6 +55,10 @@ pub fn run(args: &TuneArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
                 MethodArg::Controller => return Exit::Usage.saying(CliTuneMessage::NotForPositions),
             };
             let identification = match (args.method, args.identify) {
+                (MethodArg::Step, PositionIdentificationArg::Relay)
+                | (MethodArg::Relay, PositionIdentificationArg::Step) => {
+                    return Exit::Usage.saying(CliTuneMessage::TwoIdentifications);
+                }
                 (MethodArg::Step, _) | (_, PositionIdentificationArg::Step) => Identification::Step,
                 (MethodArg::Relay, _) | (_, PositionIdentificationArg::Relay) => Identification::Relay,
                 _ => Identification::Fit,
