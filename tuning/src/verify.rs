@@ -268,7 +268,7 @@ fn try_design<L: Law>(
     }
 }
 
-/// Raises the gain of the velocity loop on the machine, and lowers the proposed gains where less of it is left than they promise. Gives what is
+/// Raises the gains of the loop on the machine, and lowers the proposed gains where less of it is left than they promise. Gives what is
 /// left, and whether that is doubtful.
 fn leave_room<L: Law>(
     guard: &mut ExperimentGuard<'_, L>,
