@@ -227,7 +227,7 @@ impl<'t, L: Law> Raised<'t, L> {
         guard.speed(if self.side > 0.0 { self.speeds.1 } else { self.speeds.0 })
     }
 
-    /// Deviation of the duty in the last part of a stay: on the other side of a step, or once more on the same. In a travel it is always the other way.
+    /// Deviation of the duty in the last part of a stay: on the other side of a step, or once more on the same. To and fro it is always the other way.
     fn activity(&mut self, guard: &mut ExperimentGuard<'_, L>, is_step: bool) -> Result<f64, Cause> {
         if is_step || self.about.is_some() {
             self.side = -self.side;
@@ -257,7 +257,7 @@ pub(crate) fn headroom<L: Law>(
     let wanted = raised.wanted(&plant);
     raised.write(guard, 1.0)?;
     raised.go(guard)?;
-    // In a travel half a stroke first, so that the others go to and fro about the middle.
+    // To and fro half a stroke first, so that the others go to and fro about the middle.
     let settle_s = (1.5 * task.plant.tau_s).clamp(0.15, 1.0);
     guard.poll_for(if raised.about.is_some() { 0.5 * tried_s } else { settle_s }, true)?;
     let predicted = |raised: &Raised<'_, L>, factor: f64| {
@@ -288,7 +288,7 @@ pub(crate) fn headroom<L: Law>(
             (measured > bound_here).then(|| bound_here.hypot(RINGING * ringing(&raised, factor)));
         let again = after_step.is_some_and(|most| measured <= AT_ONCE * most);
         let rough = if again { raised.activity(guard, false)? } else { measured };
-        // Every stroke in a travel is a step.
+        // Every stroke is a step.
         let bound_again = if raised.about.is_some() { after_step.unwrap_or(bound_here) } else { bound_here };
         // Heard once, not again, and not to be expected of a step: backlash may hold it back at a steady speed. Gains that stay below are kept, with a warning.
         if again && (after_step.is_some_and(|most| measured > most) || rough > bound_again) {
