@@ -8,6 +8,8 @@ use std::time::Duration;
 
 /// Bytes taken at a time.
 const CHUNK: usize = 4096;
+/// Of one look at the line; a client that never ends does not keep the machine from going on.
+const CHUNKS: usize = 16;
 /// Longest sleep where the system cannot wait for a socket and a time at once.
 #[cfg(not(unix))]
 const NAP: Duration = Duration::from_millis(1);
@@ -67,6 +69,24 @@ impl TcpLine {
         }
     }
 
+    /// Takes all that the client has sent, so that one that has left after it is known to have left before the next one is taken.
+    fn hear(&mut self, bytes: &mut Vec<u8>) -> Heard {
+        for _ in 0..CHUNKS {
+            match self.read(bytes) {
+                Ok(true) if self.client.is_some() => {}
+                Ok(true) => return Heard::Line,
+                Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => {
+                    return Heard::Line;
+                }
+                Ok(false) | Err(_) => {
+                    self.client = None;
+                    return Heard::ClientLeft;
+                }
+            }
+        }
+        Heard::Line
+    }
+
     fn read(&mut self, bytes: &mut Vec<u8>) -> io::Result<bool> {
         let Some(client) = &mut self.client else { return Ok(true) };
         let mut chunk = [0; CHUNK];
@@ -79,16 +99,7 @@ impl TcpLine {
 impl Line for TcpLine {
     fn receive(&mut self, bytes: &mut Vec<u8>, timeout: Duration) -> Heard {
         self.wait(timeout);
-        let heard = match self.read(bytes) {
-            Ok(true) => Heard::Line,
-            Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => {
-                Heard::Line
-            }
-            Ok(false) | Err(_) => {
-                self.client = None;
-                Heard::ClientLeft
-            }
-        };
+        let heard = self.hear(bytes);
         self.accept();
         heard
     }
@@ -108,5 +119,44 @@ impl Line for TcpLine {
     fn plug_in(&mut self) -> Result<(), ServerError> {
         self.unplugged = false;
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn line_with_client() -> (TcpLine, TcpStream) {
+        let mut line = TcpLine::open(SocketAddr::from(([127, 0, 0, 1], 0))).unwrap();
+        let client = TcpStream::connect(line.address()).unwrap();
+        assert_eq!(line.receive(&mut Vec::new(), Duration::from_secs(1)), Heard::Line);
+        (line, client)
+    }
+
+    /// A server that the system let wait finds the bytes of one client, its end and the next client at one look.
+    #[test]
+    fn a_client_that_comes_when_the_one_before_has_left_is_not_turned_away() {
+        let (mut line, mut first) = line_with_client();
+        first.write_all(b"last").unwrap();
+        drop(first);
+        let mut second = TcpStream::connect(line.address()).unwrap();
+        let mut bytes = Vec::new();
+        assert_eq!(line.receive(&mut bytes, Duration::from_secs(1)), Heard::ClientLeft);
+        assert_eq!(bytes, b"last");
+        bytes.clear();
+        second.write_all(b"first").unwrap();
+        assert_eq!(line.receive(&mut bytes, Duration::from_secs(1)), Heard::Line);
+        assert_eq!(bytes, b"first");
+    }
+
+    #[test]
+    fn a_second_client_beside_the_first_is_turned_away() {
+        let (mut line, mut first) = line_with_client();
+        let mut second = TcpStream::connect(line.address()).unwrap();
+        first.write_all(b"mine").unwrap();
+        let mut bytes = Vec::new();
+        assert_eq!(line.receive(&mut bytes, Duration::from_secs(1)), Heard::Line);
+        assert_eq!(bytes, b"mine");
+        assert_eq!(second.read(&mut [0]).unwrap(), 0, "it is at its end");
     }
 }
