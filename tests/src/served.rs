@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use brushwork_child::ahead;
 use brushwork_core::session::line::SimulatedLine;
 use brushwork_mcp_sim::controller::{Bus, Controller};
 use brushwork_mcp_wire::packet_serial::Generation;
@@ -48,8 +49,8 @@ impl<M: Machine + 'static> Served<M> {
     }
 
     fn at(machine: M, endpoint: &Endpoint, folder: TempDir, target: impl FnOnce(&str) -> String) -> Self {
-        let handle = Server::spawn(machine, ServerOptions::default(), endpoint).expect("it can be served");
-        let _ = handle.inspect(|_| go_first());
+        let handle = ahead(|| Server::spawn(machine, ServerOptions::default(), endpoint));
+        let handle = handle.expect("it can be served");
         let target = target(handle.address());
         Self { handle, target, _folder: folder }
     }
@@ -106,13 +107,6 @@ impl<M: Machine + 'static> Served<M> {
             }
         }
     }
-}
-
-/// Lets this thread go before those that keep the machine busy, where the system allows it, as it does to root: a controller has a processor of
-/// its own, and does not fall silent for a quarter second since its host has much to do.
-fn go_first() {
-    #[cfg(target_os = "linux")]
-    let _ = rustix::process::setpriority_process(Some(rustix::thread::gettid()), -15);
 }
 
 /// When a motor was off, in the machine's time from the last look before the attack. Far apart, the two say that this computer was too late to

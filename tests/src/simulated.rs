@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use brushwork_canopen::NodeId;
 use brushwork_canopen::adapter::Form;
+use brushwork_child::ahead;
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_mcp_sim::settings::Settings;
 use brushwork_mcp_wire::packet_serial::{Address, Generation, Request, number};
@@ -151,8 +152,8 @@ impl OnPty {
         let folder = tempfile::tempdir().expect("a temporary folder can be made");
         let endpoint = Endpoint::Pty { link: folder.path().join("controller") };
         let options = ServerOptions { stream, ..ServerOptions::default() };
-        let handle =
-            Server::spawn(bus, options, &endpoint).expect("the system has a pseudo-terminal to give");
+        let handle = ahead(|| Server::spawn(bus, options, &endpoint));
+        let handle = handle.expect("the system has a pseudo-terminal to give");
         Self { handle, folder }
     }
 

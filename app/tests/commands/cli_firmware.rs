@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::cli::{Run, program, run};
-use brushwork_child::Program;
+use brushwork_child::{Program, ahead};
 use brushwork_link::settings::Profile;
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig, Flash};
 use brushwork_mcp_wire::models;
@@ -37,8 +37,8 @@ impl Unit {
         let unit = Controller::new(ControllerConfig::of(model)).expect("the preset is valid");
         let endpoint = Endpoint::Pty { link: folder.path().join("port") };
         let bus = Bus::single(unit, StreamIndex::Usb);
-        let server =
-            Server::spawn(bus, ServerOptions::default(), &endpoint).expect("there are pseudo-terminals");
+        let server = ahead(|| Server::spawn(bus, ServerOptions::default(), &endpoint))
+            .expect("there are pseudo-terminals");
         let this = Self { server, folder };
         let made = firmware(&["image", &this.image(), "--model", "roboclaw-2x7a", "--version", "9.8.7"]);
         assert_eq!(made.code, 0, "{made:?}");

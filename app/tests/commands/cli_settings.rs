@@ -224,7 +224,7 @@ fn a_profile_that_is_not_there_is_told_by_name() {
 mod on_a_pseudo_terminal {
     use std::path::Path;
 
-    use brushwork_child::Program;
+    use brushwork_child::{Program, ahead};
     use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
     use brushwork_plant::machine::StreamIndex;
     use brushwork_plant::server::{Endpoint, Server, ServerOptions, SimHandle};
@@ -388,6 +388,6 @@ mod on_a_pseudo_terminal {
         let options = ServerOptions { faults, ..ServerOptions::default() };
         let endpoint = Endpoint::Pty { link: link.to_owned() };
         let bus = Bus::single(unit, StreamIndex::Usb);
-        Server::spawn(bus, options, &endpoint).expect("there are pseudo-terminals")
+        ahead(|| Server::spawn(bus, options, &endpoint)).expect("there are pseudo-terminals")
     }
 }

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use crate::causes::{self, Cause};
 use crate::wait::PATIENCE;
-use brushwork_child::Child;
+use brushwork_child::{Child, ahead};
 use brushwork_mcp_sim::controller::Bus;
 use brushwork_plant::machine::{Machine as _, StreamIndex};
 use brushwork_plant::server::{Endpoint, Server, ServerOptions};
@@ -20,7 +20,8 @@ fn status_of(cause: &Cause) -> Value {
         bus.apply(0, action);
     }
     bus.advance(Duration::from_secs(2));
-    let served = Server::spawn(bus, ServerOptions::default(), &endpoint).expect("loopback has a free port");
+    let served =
+        ahead(|| Server::spawn(bus, ServerOptions::default(), &endpoint)).expect("loopback has a free port");
     let target = format!("tcp:{}", served.address().trim_start_matches("tcp:"));
     let mut command = Command::new(env!("CARGO_BIN_EXE_brushwork"));
     command.args(["status", "--json", "--connect", &target]);

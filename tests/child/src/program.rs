@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
 
-use crate::Child;
+use crate::{Child, ahead};
 
 /// Lines that may wait unread before the child has to.
 const QUEUE_LINES: usize = 10_000;
@@ -74,7 +74,8 @@ impl Program {
         if !has_its_own {
             DATA.with(|folder| command.env("BRUSHWORK_DATA_DIR", folder.path()));
         }
-        let mut child = Child::spawn(&command, [Stdio::piped(), Stdio::piped(), Stdio::piped()]);
+        let start = || Child::spawn(&command, [Stdio::piped(), Stdio::piped(), Stdio::piped()]);
+        let mut child = if is_controller(&command) { ahead(start) } else { start() };
         let stdin = child.0.stdin.take();
         let stdout = read_lines("stdout", child.0.stdout.take().expect("stdout is piped"));
         let stderr = read_lines("stderr", child.0.stderr.take().expect("stderr is piped"));
@@ -205,6 +206,11 @@ impl Program {
             thread::sleep(Duration::from_millis(5));
         }
     }
+}
+
+/// Whether it is `brushwork sim`.
+fn is_controller(command: &Command) -> bool {
+    command.get_args().next().is_some_and(|first| first == "sim")
 }
 
 fn read_lines(name: &str, stream: impl Read + Send + 'static) -> Receiver<String> {

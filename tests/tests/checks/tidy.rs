@@ -128,9 +128,10 @@ fn no_file_names_a_folder_of_somebodys_machine() {
 }
 
 /// The programs that tests start by name, and what has them: packages that every Debian has, or that `tests/run` installs.
-const PROGRAMS: [(&str, &str); 7] = [
+const PROGRAMS: [(&str, &str); 8] = [
     ("Xvfb", "tests/run"),
     ("bash", "bash"),
+    ("chrt", "util-linux"),
     ("dbus-daemon", "tests/run"),
     ("env", "coreutils"),
     ("sh", "dash"),
