@@ -103,9 +103,21 @@ pub fn edit(file: &Path, from: &str, to: &str) {
     std::fs::write(file, text.replacen(from, to, 1)).expect("the profile can be written");
 }
 
+/// Starts a program and waits for the first line that it prints.
+fn told(command: Command) -> (Program, String) {
+    let mut program = Program::spawn(command);
+    let first = program.next_line(LIMIT).expect("it says where it is");
+    (program, first)
+}
+
 /// `brushwork sim` in the background: a controller that outlives one command, and ends with this.
+///
+/// It is served on a TCP port. What is written to a pseudo-terminal is passed on by a thread of the kernel, which comes after the programs that
+/// keep a busy machine busy: six of them held replies up for longer than a serial port is waited for, and for seconds at a time. Where nothing answers it is waited for as long as on a
+/// serial port.
 pub struct Simulated {
     _program: Program,
+    target: String,
     pub folder: TempDir,
 }
 
@@ -113,15 +125,26 @@ impl Simulated {
     pub fn start(arguments: &[&str]) -> Self {
         let folder = tempfile::tempdir().expect("a temporary folder can be made");
         let mut command = program();
-        command.args(["sim", "--pty"]).arg(folder.path().join("port")).args(arguments);
-        let mut program = Program::spawn(command);
-        let first = program.next_line(LIMIT).expect("it says where it is");
-        assert!(first.contains("port"), "{first}");
-        Self { _program: program, folder }
+        command.args(["sim", "--tcp", "127.0.0.1:0"]).args(arguments);
+        let (program, first) = told(command);
+        let (_, place) = first.rsplit_once("tcp:").unwrap_or_else(|| panic!("no place in {first}"));
+        Self { _program: program, target: format!("tcp:{place},latency=60"), folder }
     }
 
+    /// On a pseudo-terminal, for those who open it as a file.
+    pub fn start_on_pty(arguments: &[&str]) -> Self {
+        let folder = tempfile::tempdir().expect("a temporary folder can be made");
+        let link = folder.path().join("port");
+        let mut command = program();
+        command.args(["sim", "--pty"]).arg(&link).args(arguments);
+        let (program, first) = told(command);
+        assert!(first.contains("port"), "{first}");
+        Self { _program: program, target: name(&link).to_owned(), folder }
+    }
+
+    /// What a command connects to.
     pub fn port(&self) -> String {
-        name(&self.folder.path().join("port")).to_owned()
+        self.target.clone()
     }
 
     pub fn settings(&self, action: &str, arguments: &[&str]) -> Run {

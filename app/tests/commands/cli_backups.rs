@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::Command;
 
 use crate::cli::{DONE, LIMIT, exported, name, program_keeping_in, run};
-use brushwork_child::Program;
+use brushwork_child::{Program, ahead};
 use brushwork_core::keep::{Store, UnitId};
 use brushwork_link::settings::{Act, Journal, Profile, SettingValue};
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
@@ -32,10 +32,10 @@ impl Bench {
         settings.motors[0].motion.velocity_p_raw = (P_BEFORE * 65536.0) as u32;
         config.settings = Some(settings);
         let unit = Controller::new(config).expect("the preset is valid");
-        let endpoint = Endpoint::Pty { link: folder.path().join("port") };
+        let endpoint = Endpoint::Tcp("127.0.0.1:0".parse().expect("it is an address"));
         let bus = Bus::single(unit, StreamIndex::Usb);
-        let unit =
-            Server::spawn(bus, ServerOptions::default(), &endpoint).expect("there are pseudo-terminals");
+        let unit = ahead(|| Server::spawn(bus, ServerOptions::default(), &endpoint))
+            .expect("there are pseudo-terminals");
         Self { unit, folder }
     }
 
@@ -46,8 +46,8 @@ impl Bench {
     /// The program with these arguments, where PORT and FOLDER stand for this bench's own.
     fn command(&self, keeping_in: &Path, arguments: &[&str]) -> Command {
         let folder = name(self.folder.path()).to_owned();
-        let own =
-            |argument: &&str| argument.replace("PORT", &format!("{folder}/port")).replace("FOLDER", &folder);
+        let port = format!("tcp:{}", self.unit.address().trim_start_matches("tcp:"));
+        let own = |argument: &&str| argument.replace("PORT", &port).replace("FOLDER", &folder);
         let mut command = program_keeping_in(keeping_in);
         command.args(arguments.iter().map(own));
         command

@@ -1,38 +1,44 @@
-//! The command line on a CANopen bus: simulated nodes behind an adapter on a pseudo-terminal, and in the program itself.
+//! The command line on a CANopen bus: simulated nodes behind an adapter on a TCP port, and in the program itself.
 #![cfg(unix)]
 
 use crate::cli::{Run, program, run};
 use brushwork_canopen::NodeId;
 use brushwork_canopen::adapter::Form;
+use brushwork_child::ahead;
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_plant::server::{Endpoint, Server, ServerOptions, SimHandle};
 use serde_json::{Value, json};
 use std::io::Write as _;
-use tempfile::TempDir;
+use std::net::TcpStream;
 
 fn brushwork(arguments: &[&str]) -> Run {
     run(program().args(arguments))
 }
 
-/// Nodes behind an adapter on a pseudo-terminal, as somebody else's program would run them.
-fn served(form: Form, nodes: &[u8]) -> (SimHandle<Bus>, TempDir, String) {
-    let folder = tempfile::tempdir().expect("a temporary folder can be made");
+/// Where the adapter is reached.
+fn place(server: &SimHandle<Bus>) -> &str {
+    server.address().trim_start_matches("tcp:")
+}
+
+/// Nodes behind an adapter, as somebody else's program would run them.
+fn served(form: Form, nodes: &[u8]) -> (SimHandle<Bus>, String) {
     let units = nodes.iter().map(|id| {
         let mut config = ControllerConfig::default();
         config.set_node(NodeId::new(*id).expect("a node id"));
         Controller::new(config).expect("the preset is valid")
     });
     let bus = Bus::on_can(units.collect(), form).expect("there are units");
-    let endpoint = Endpoint::Pty { link: folder.path().join("adapter") };
-    let server = Server::spawn(bus, ServerOptions::default(), &endpoint).expect("there are pseudo-terminals");
-    let target = format!("can:{},form={}", folder.path().join("adapter").display(), form.key());
-    (server, folder, target)
+    let endpoint = Endpoint::Tcp("127.0.0.1:0".parse().expect("it is an address"));
+    let server =
+        ahead(|| Server::spawn(bus, ServerOptions::default(), &endpoint)).expect("loopback has a free port");
+    let target = format!("can:tcp:{},form={}", place(&server), form.key());
+    (server, target)
 }
 
 #[test]
 fn nodes_behind_either_form_of_adapter_are_listed_with_their_identity() {
     for form in Form::ALL {
-        let (_server, _folder, target) = served(form, &[3, 17]);
+        let (_server, target) = served(form, &[3, 17]);
         let run = brushwork(&["nodes", "--json", "--connect", &target]);
         assert_eq!(run.code, 0, "{run:?}");
         let json: Value = serde_json::from_str(&run.stdout).unwrap();
@@ -45,8 +51,8 @@ fn nodes_behind_either_form_of_adapter_are_listed_with_their_identity() {
 
 #[test]
 fn the_wrong_form_of_adapter_and_a_node_that_is_not_there_are_told() {
-    let (_server, folder, _target) = served(Form::Ascii, &[3]);
-    let adapter = folder.path().join("adapter").display().to_string();
+    let (server, _target) = served(Form::Ascii, &[3]);
+    let adapter = format!("tcp:{}", place(&server));
     let run = brushwork(&["nodes", "--connect", &format!("can:{adapter},form=binary")]);
     assert_eq!(run.code, 3, "{run:?}");
     assert!(run.stderr.contains("no node of the bus answered"), "{run:?}");
@@ -57,7 +63,7 @@ fn the_wrong_form_of_adapter_and_a_node_that_is_not_there_are_told() {
 
 #[test]
 fn settings_are_written_over_can_and_a_drive_is_refused_with_its_reason() {
-    let (server, _folder, target) = served(Form::Ascii, &[3]);
+    let (server, target) = served(Form::Ascii, &[3]);
     let node = format!("{target},node=3");
     let run = brushwork(&["settings", "write", "-c", &node, "motor1.velocity.qpps=12345", "--yes"]);
     assert_eq!(run.code, 0, "{run:?}");
@@ -87,9 +93,8 @@ fn firmware_is_not_updated_over_can() {
 
 #[test]
 fn a_stopped_node_is_listed_with_what_to_do_and_started_when_that_is_asked_for() {
-    let (server, folder, target) = served(Form::Ascii, &[3]);
-    let adapter = folder.path().join("adapter");
-    std::fs::OpenOptions::new().write(true).open(&adapter).unwrap().write_all(b":S000N0203;").unwrap();
+    let (server, target) = served(Form::Ascii, &[3]);
+    TcpStream::connect(place(&server)).unwrap().write_all(b":S000N0203;").unwrap();
     let run = brushwork(&["status", "--connect", &format!("{target},node=3")]);
     assert_eq!(run.code, 3, "{run:?}");
     assert!(run.stderr.contains("node 3 is stopped") && run.stderr.contains("nodes --start 3"), "{run:?}");
@@ -105,7 +110,7 @@ fn a_stopped_node_is_listed_with_what_to_do_and_started_when_that_is_asked_for()
 
 #[test]
 fn nodes_of_other_makers_and_doubled_numbers_are_listed() {
-    let (server, _folder, target) = served(Form::Ascii, &[3, 4, 4]);
+    let (server, target) = served(Form::Ascii, &[3, 4, 4]);
     server.inspect(|bus| bus.add_other_node(NodeId::new(9).unwrap())).unwrap();
     let run = brushwork(&["nodes", "--connect", &target]);
     assert_eq!(run.code, 4, "{run:?}");

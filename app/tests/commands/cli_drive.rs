@@ -2,6 +2,7 @@
 #![cfg(unix)]
 
 use crate::cli::{REFUSED, program, run};
+use brushwork_child::ahead;
 use brushwork_mcp_sim::controller::{Bus, Controller, ControllerConfig};
 use brushwork_plant::machine::StreamIndex;
 use brushwork_plant::server::{Endpoint, Server, ServerOptions};
@@ -10,22 +11,21 @@ use brushwork_values::Motor;
 
 #[test]
 fn a_motor_that_is_held_ends_it_with_4_and_a_sentence() {
-    let folder = tempfile::tempdir().expect("a temporary folder can be made");
     let unit = Controller::new(ControllerConfig::default()).expect("the preset is valid");
-    let port = folder.path().join("port");
-    let server = Server::spawn(
-        Bus::single(unit, StreamIndex::Usb),
-        ServerOptions::default(),
-        &Endpoint::Pty { link: port.clone() },
-    )
-    .expect("there are pseudo-terminals");
+    let server = ahead(|| {
+        Server::spawn(
+            Bus::single(unit, StreamIndex::Usb),
+            ServerOptions::default(),
+            &Endpoint::Tcp("127.0.0.1:0".parse().expect("it is an address")),
+        )
+    })
+    .expect("loopback has a free port");
     server.apply(0, WorldAction::LockShaft { motor: Motor::M1, on: true }).expect("it runs");
-    let port = port.display().to_string();
     // A loop gives all it has to a motor that is held, which no friction explains.
     let words = [
         "drive",
         "--connect",
-        &format!("{port},stream=usb"),
+        &format!("tcp:{},stream=usb", server.address().trim_start_matches("tcp:")),
         "--motor",
         "1",
         "--speed",

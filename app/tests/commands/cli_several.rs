@@ -171,9 +171,7 @@ fn two_lines_are_asked_and_stopped_by_one_command() {
 fn a_chain_of_motion_minds_is_asked_the_same_way() {
     let line = Simulated::start(&["--model", "motion-mind-3", "--address", "3,5-6"]);
     let words = ["status", "--family", "motion-mind", "--address", "3,5-6", "--json"];
-    let json = run(program().args(words).args(["-c", &format!("{},baud=19200", line.port())]))
-        .ended_with(DONE)
-        .json();
+    let json = run(program().args(words).args(["-c", &line.port()])).ended_with(DONE).json();
     assert_eq!(each(&json, "/result/identity/address"), [3, 5, 6]);
 }
 
@@ -247,7 +245,9 @@ fn several_boards_are_watched_with_a_line_for_each_and_the_silent_one_is_named()
         command
     });
     let mut seen = Vec::new();
-    while seen.len() < 6 {
+    // A busy computer may show some rows before it has read anything.
+    while seen.len() < 6 || !seen[seen.len() - 2..].iter().all(|(_, is_read)| *is_read) {
+        assert!(seen.len() < 1000, "neither is read: {seen:?}");
         let text = running.next_line(LIMIT).expect("it goes on");
         let object: Value = serde_json::from_str(&text).expect("JSON");
         seen.push((object["address"].clone(), object["readings"]["m2_current"].is_number()));
@@ -255,8 +255,7 @@ fn several_boards_are_watched_with_a_line_for_each_and_the_silent_one_is_named()
     running.signal("INT");
     let ending = running.finish(LIMIT);
     let addresses: Vec<_> = seen.iter().map(|(address, _)| address.clone()).collect();
-    assert_eq!(addresses, [0x80, 0x81, 0x80, 0x81, 0x80, 0x81]);
-    assert!(seen[4..].iter().all(|(_, is_read)| *is_read), "both are read: {seen:?}");
+    assert!(addresses.chunks(2).all(|pair| pair == [0x80, 0x81]), "they take turns: {seen:?}");
     assert!(ending.stderr.join(" ").contains("No unit answers at 0x82 on"), "{ending:?}");
 }
 
@@ -290,7 +289,7 @@ fn two_units_at_one_address_are_known_by_their_garbled_replies_and_not_moved_tog
 #[test]
 fn a_motion_mind_of_a_chain_is_given_its_address_too() {
     let line = Simulated::start(&["--model", "motion-mind-3", "--address", "1"]);
-    let target = format!("{},family=motion-mind,baud=19200", line.port());
+    let target = format!("{},family=motion-mind", line.port());
     let run = run(program().args(["address", "5", "--yes", "-c", &target]));
     run.ended_with(DONE).prints("Motion Mind 3 answers at unit 5 on");
 }

@@ -45,7 +45,7 @@ impl Terminal {
 
 #[test]
 fn the_manuals_program_sends_and_receives_the_manuals_bytes() {
-    let line = Simulated::start(&["--model", "motorvator-3", "--program", MANUAL]);
+    let line = Simulated::start_on_pty(&["--model", "motorvator-3", "--program", MANUAL]);
     let mut terminal = Terminal::open(&line);
     terminal.send(b"G\r");
     let begun = Instant::now();
@@ -64,7 +64,7 @@ fn the_manuals_program_sends_and_receives_the_manuals_bytes() {
 
 #[test]
 fn a_board_waits_for_g_and_tells_its_version_and_what_it_does_not_know() {
-    let line = Simulated::start(&["--model", "motorvator-3", "--program", MANUAL]);
+    let line = Simulated::start_on_pty(&["--model", "motorvator-3", "--program", MANUAL]);
     let mut terminal = Terminal::open(&line);
     terminal.send(b"H\r");
     assert_eq!(terminal.line(), b"MotorVator AWOS 2.32 (simulated by Brushwork)\r");
@@ -78,7 +78,7 @@ fn a_board_waits_for_g_and_tells_its_version_and_what_it_does_not_know() {
 
 #[test]
 fn the_host_library_is_spoken_to_in_plain_bytes() {
-    let line = Simulated::start(&["--model", "motorvator-3"]);
+    let line = Simulated::start_on_pty(&["--model", "motorvator-3"]);
     let mut terminal = Terminal::open(&line);
     assert_eq!(terminal.line(), b"073082066000002000000000000\r", "it runs, in version 2");
     let mut ask = |sent: &[u8]| {

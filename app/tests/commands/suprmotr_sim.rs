@@ -33,7 +33,7 @@ fn units_forms_echo_and_selection_are_chosen_and_the_eeprom_kept() {
     };
     let start = |extra: &[&'static str]| {
         let words = options(extra);
-        Simulated::start(&words.iter().map(String::as_str).collect::<Vec<_>>())
+        Simulated::start_on_pty(&words.iter().map(String::as_str).collect::<Vec<_>>())
     };
     let line = start(&["--units", "0,3,F"]);
     assert_eq!(exchange(&line.port(), b"\x01FTB\r"), "B:+0000000015\r\n\u{3}");
