@@ -348,17 +348,20 @@ fn babble(listener: &TcpListener) {
 
 #[test]
 fn a_port_that_talks_nonsense_is_no_controller() {
-    for command in ["status", "stop", "drive"] {
-        let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
-        let target = format!("tcp:{}", listener.local_addr().expect("it has an address"));
-        std::thread::scope(|scope| {
-            scope.spawn(|| babble(&listener));
-            let more: &[&str] = if command == "drive" { &["--duty", "10"] } else { &[] };
-            let ending = run(&[&[command, "--connect", &target], more].concat());
-            assert_reported(&ending, NO_LINK, &[&target]);
-            assert!(ending.stdout.is_empty(), "{ending:?}");
-        });
-    }
+    // Each looks for some seconds, so that they do it at once.
+    std::thread::scope(|scope| {
+        for command in ["status", "stop", "drive"] {
+            let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
+            let target = format!("tcp:{}", listener.local_addr().expect("it has an address"));
+            scope.spawn(move || babble(&listener));
+            scope.spawn(move || {
+                let more: &[&str] = if command == "drive" { &["--duty", "10"] } else { &[] };
+                let ending = run(&[&[command, "--connect", &target], more].concat());
+                assert_reported(&ending, NO_LINK, &[&target]);
+                assert!(ending.stdout.is_empty(), "{ending:?}");
+            });
+        }
+    });
 }
 
 #[test]

@@ -180,10 +180,10 @@ fn run_in(folder: &Path, arguments: &[&str]) -> (Option<i32>, String, String) {
 fn settings_through_their_life(protocol: &str) {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let folder = folder.path();
-    let port = folder.join("mm").display().to_string();
-    let options = ["--protocol", protocol, "--address", "5", "--revision", "9", "--pty", &port];
-    let mut sim = Program::start(BRUSHWORK, &[&["sim", "--model", "motion-mind-3"], &options[..]].concat());
-    sim.next_line(LIMIT).expect("it says where it is");
+    let options = ["--protocol", protocol, "--address", "5", "--revision", "9"];
+    let (_sim, stream) = served(&options);
+    let port = format!("tcp:{}", stream.peer_addr().expect("it is connected"));
+    drop(stream);
     let target = format!("{port},family=motion-mind");
     let at_unit = ["--connect", &target, "--address", "5"];
     let settings =

@@ -1,6 +1,7 @@
 //! A driver for a sister controller, which shares no line of code with this project, against simulated SuprMotrs on a pseudo-terminal.
 #![cfg(unix)]
 
+use brushwork_child::ahead;
 use brushwork_plant::server::{Endpoint, Server, ServerOptions, SimHandle};
 use brushwork_suprmotr_sim::{SuprMotr, SuprMotrBus, SuprMotrConfig};
 use brushwork_suprmotr_wire::{Address, ReportForm};
@@ -36,7 +37,8 @@ fn the_python_driver_of_a_sister_controller_drives_two_boards() {
     let port = folder.path().join("line");
     let units = [0, 3].map(|number| SuprMotr::new(config(number)).unwrap());
     let endpoint = Endpoint::Pty { link: port.clone() };
-    let server = Server::spawn(SuprMotrBus::new(units.into()), ServerOptions::default(), &endpoint).unwrap();
+    let server =
+        ahead(|| Server::spawn(SuprMotrBus::new(units.into()), ServerOptions::default(), &endpoint)).unwrap();
     let findings = foreign::run("mercury_check.py", &port, &[], &mut Line(server));
     assert!(findings.failures().is_empty(), "{:#?}", findings.failures());
     assert_eq!(findings.findings.len(), 24, "every method was looked at");
@@ -48,7 +50,7 @@ fn a_client_written_from_the_manual_alone_gets_what_the_manual_says() {
         return;
     }
     let forms = [("full", ReportForm::Full), ("address", ReportForm::Address), ("id", ReportForm::Id)];
-    for (echo, (name, form)) in ["on", "off", "off"].into_iter().zip(forms) {
+    let check = |echo: &str, name: &str, form: ReportForm| {
         let folder = tempfile::tempdir().unwrap();
         let port = folder.path().join("line");
         let mut config = SuprMotrConfig::new(Address::FACTORY);
@@ -57,9 +59,16 @@ fn a_client_written_from_the_manual_alone_gets_what_the_manual_says() {
         let board = SuprMotr::new(config).unwrap();
         let endpoint = Endpoint::Pty { link: port.clone() };
         let server =
-            Server::spawn(SuprMotrBus::new(vec![board]), ServerOptions::default(), &endpoint).unwrap();
+            ahead(|| Server::spawn(SuprMotrBus::new(vec![board]), ServerOptions::default(), &endpoint))
+                .unwrap();
         let findings = foreign::run("suprmotr_manual_check.py", &port, &[name, echo], &mut Line(server));
         assert!(findings.failures().is_empty(), "{name}, echo {echo}: {:#?}", findings.failures());
         assert_eq!(findings.findings.len(), 80, "{name}: everything was looked at");
-    }
+    };
+    // Most of it is waiting for what must not come and for moves, so that they do it at once.
+    std::thread::scope(|scope| {
+        for (echo, (name, form)) in ["on", "off", "off"].into_iter().zip(forms) {
+            scope.spawn(move || check(echo, name, form));
+        }
+    });
 }
