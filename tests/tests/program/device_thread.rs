@@ -30,6 +30,7 @@ struct Window {
 
 impl Window {
     fn connect(controller: &OnPty, poll: PollRate) -> Self {
+        brushwork::install();
         let port = controller.port();
         let transport =
             SerialTransport::open(&port.to_string_lossy(), 115_200).expect("the terminal is there");

@@ -28,6 +28,7 @@ fn config(model: &'static Model, generation: Generation) -> ControllerConfig {
 }
 
 fn model(key: &str) -> &'static Model {
+    brushwork::install();
     models::lookup(key).expect("the tests name models of the list")
 }
 

@@ -110,6 +110,7 @@ fn randomise(wire: &mut PacketWire, table: &SettingsTable, generation: Generatio
 }
 
 fn unit(model: &'static Model, generation: Generation) -> (VirtualLine<Bus>, PacketWire, SettingsTable) {
+    brushwork::install();
     let config = ControllerConfig { model, generation, ..ControllerConfig::default() };
     let controller = Controller::new(config).expect("the default world is sound");
     let line = VirtualLine::new(Bus::single(controller, StreamIndex::Usb), StreamIndex::Usb);
