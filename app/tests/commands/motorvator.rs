@@ -77,6 +77,19 @@ fn a_program_in_the_boards_memory_is_started_at_the_owners_word_and_driven_if_it
         .explains("is no MotorVator");
 }
 
+/// The library tells twice a second that it runs, sooner than silence is silence on this line.
+#[test]
+fn a_program_that_goes_on_sending_is_started_on_a_line_that_may_be_late() {
+    let board = Simulated::start(&["--model", "motorvator-3", "--started", "no"]);
+    let target = board.port().replace("latency=60", "latency=400");
+    assert_ne!(target, board.port());
+    let late = |words: &[&str]| {
+        run(program().args(words).args(["--connect", &format!("{target},family=motorvator")]))
+    };
+    late(&["mecc", "start", "--yes"]).ended_with(DONE).prints("The host library 2 runs on the board");
+    late(&["terminal", "H"]).ended_with(DONE).prints("MotorVator AWOS 2.32");
+}
+
 #[test]
 fn a_stepper_is_configured_through_the_settings_which_are_not_kept() {
     let line = line();

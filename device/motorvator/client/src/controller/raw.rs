@@ -9,9 +9,10 @@ use brushwork_link::device::controller::Line;
 use brushwork_link::exchange::{ExchangeError, Judgement, Outgoing};
 use brushwork_motorvator_wire::host::HostOrder;
 use brushwork_motorvator_wire::{LINE_END, Order};
+use std::sync::Arc;
 use std::time::Duration;
 
-/// How long answers are listened to.
+/// How long answers are listened to, beyond what the line takes.
 const LISTEN_FOR: Duration = Duration::from_millis(250);
 
 /// What typed bytes are.
@@ -24,19 +25,27 @@ pub fn look(bytes: &[u8]) -> Result<Order, ExchangeError> {
 pub fn send(speaker: &mut Speaker, line: &mut Line<'_>, bytes: &[u8]) -> Result<Vec<u8>, ExchangeError> {
     let order = look(bytes)?;
     gate(*speaker, line, &order)?;
-    let mut heard = Vec::new();
-    let outgoing = Outgoing { bytes, reply_length: 28, patience: LISTEN_FOR, retries: 0, once: true };
-    let (exchange, watch) = line.parts();
-    let done = exchange.exchange(&outgoing, watch, &mut |bytes| {
-        heard = bytes.to_vec();
-        Judgement::More(1)
-    });
+    let heard = listened(line, bytes);
     if order == Order::Go {
         speaker.has_library = false;
     }
+    heard
+}
+
+/// Sends bytes and gives what came back, which may be nothing: a program answers what it likes. One that goes on sending, as the host library
+/// does twice a second, is listened to for no longer.
+fn listened(line: &mut Line<'_>, bytes: &[u8]) -> Result<Vec<u8>, ExchangeError> {
+    let mut heard = Vec::new();
+    let outgoing = Outgoing { bytes, reply_length: 28, patience: LISTEN_FOR, retries: 0, once: true };
+    let (exchange, watch) = line.parts();
+    let clock = Arc::clone(exchange.clock());
+    let until = clock.now() + LISTEN_FOR + exchange.longest_turnaround();
+    let done = exchange.exchange(&outgoing, watch, &mut |bytes| {
+        heard = bytes.to_vec();
+        if clock.now() < until { Judgement::More(1) } else { Judgement::Good(bytes.len()) }
+    });
     match done {
         Err(error) if error.is_link_lost() || error.interruption().is_some() => Err(error),
-        // Silence is an answer too: a program answers what it likes.
         Ok(_) | Err(_) => Ok(heard),
     }
 }
@@ -44,14 +53,8 @@ pub fn send(speaker: &mut Speaker, line: &mut Line<'_>, bytes: &[u8]) -> Result<
 /// Starts the program in the board's memory. Whatever it is, it has not answered yet.
 pub fn start(speaker: &mut Speaker, line: &mut Line<'_>) -> Result<(), ExchangeError> {
     speaker.has_library = false;
-    let bytes = [b'G', LINE_END];
-    let outgoing = Outgoing { bytes: &bytes, reply_length: 28, patience: LISTEN_FOR, retries: 0, once: true };
-    let (exchange, watch) = line.parts();
-    match exchange.exchange(&outgoing, watch, &mut |_| Judgement::More(1)) {
-        Err(error) if error.is_link_lost() || error.interruption().is_some() => Err(error),
-        // The manual names no answer to it.
-        Ok(_) | Err(_) => Ok(()),
-    }
+    // The manual names no answer to it.
+    listened(line, &[b'G', LINE_END]).map(drop)
 }
 
 fn gate(speaker: Speaker, line: &Line<'_>, order: &Order) -> Result<(), ExchangeError> {
