@@ -1,7 +1,6 @@
 //! Lets the tests of this package, which are those of the built program, run in larger number than there are processors.
 
-/// Half of their time they wait for programs, simulated controllers and time-outs. With more of them at once controllers on pseudo-terminals answer late:
-/// a thread of the kernel passes their bytes on, and comes after those that compute.
+/// Half of their time they wait for programs, simulated controllers and time-outs. With four for each, readings over pseudo-terminals came too late.
 const TESTS_PER_PROCESSOR: usize = 2;
 
 /// Cargo sets what a build script sets for the tests of its package too, and for no others: those of the window and of the tuner compute, and go

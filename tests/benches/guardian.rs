@@ -168,8 +168,8 @@ mod killing {
             Self((0..count).map(|_| Child::spawn(&command, [(); 3].map(|()| Stdio::null()))).collect())
         }
 
-        /// On a pseudo-terminal; on a busy machine by TCP, but for `drive`: the kernel hands on what goes through a terminal by a thread of its own,
-        /// there up to half a second late, and who hears nothing for a quarter second stops by itself before the attack.
+        /// On a pseudo-terminal; on a busy machine by TCP, but for `drive`: what goes through a terminal comes up to half a second late there, and who
+        /// hears nothing for a quarter second stops by itself before the attack.
         fn serve<M: Machine + 'static>(&self, attack: Attack, machine: M, options: &str) -> Served<M> {
             if attack != Attack::Drive && !self.0.is_empty() {
                 Served::on_tcp(machine, options)

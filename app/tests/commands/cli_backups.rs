@@ -15,7 +15,7 @@ use brushwork_plant::machine::StreamIndex;
 use brushwork_plant::server::{Endpoint, Server, ServerOptions, SimHandle};
 use tempfile::TempDir;
 
-/// A controller on a pseudo-terminal whose settings are not those of the factory, and a folder for what is kept of it.
+/// A controller on a TCP port whose settings are not those of the factory, and a folder for what is kept of it.
 struct Bench {
     unit: SimHandle<Bus>,
     folder: TempDir,
@@ -35,7 +35,7 @@ impl Bench {
         let endpoint = Endpoint::Tcp("127.0.0.1:0".parse().expect("it is an address"));
         let bus = Bus::single(unit, StreamIndex::Usb);
         let unit = ahead(|| Server::spawn(bus, ServerOptions::default(), &endpoint))
-            .expect("there are pseudo-terminals");
+            .expect("loopback has a free port");
         Self { unit, folder }
     }
 

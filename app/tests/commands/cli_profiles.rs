@@ -154,7 +154,7 @@ fn a_full_disk_and_a_folder_that_cannot_be_written_are_sentences_and_the_old_fil
 }
 
 #[cfg(unix)]
-mod on_a_pseudo_terminal {
+mod on_a_served_controller {
     use brushwork_child::Program;
     use std::path::Path;
 

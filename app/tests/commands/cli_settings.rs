@@ -221,7 +221,7 @@ fn a_profile_that_is_not_there_is_told_by_name() {
 }
 
 #[cfg(unix)]
-mod on_a_pseudo_terminal {
+mod on_a_served_controller {
     use std::path::Path;
 
     use brushwork_child::{Program, ahead};
@@ -234,7 +234,7 @@ mod on_a_pseudo_terminal {
 
     #[test]
     fn what_one_command_writes_the_next_one_reads() {
-        let unit = Simulated::start(&[]);
+        let unit = Simulated::start_on_pty(&[]);
         unit.settings("write", &["motor1.velocity.p=2.5", "pin.1.deadband=3", "--yes"]).ended_with(DONE);
         unit.settings("read", &["motor1.velocity.p"]).ended_with(DONE).prints("* 2.500");
         let json = unit.settings("save", &["--yes", "--json"]).ended_with(DONE).json();
