@@ -102,7 +102,7 @@ def public_methods():
 
 def main():
     path = sys.argv[1]
-    device = Basicmicro(path, 115200, timeout=0.05, retries=RETRIES)
+    device = Basicmicro(path, 115200, timeout=0.2, retries=RETRIES)
     checker = Checker(device)
     check_local_methods(checker)
     factory = truth()["settings"]

@@ -4,7 +4,6 @@ Usage: mercury_check.py PORT. The boards on the line have the addresses 0 and 3,
 """
 
 import sys
-import time
 import types
 
 
@@ -20,15 +19,12 @@ stand_in("git")
 stand_in("numpy")
 stand_in("bitarray", bitarray=object)
 
-from basil.HL import mercury  # noqa: E402
 from basil.HL.mercury import Mercury  # noqa: E402
 from basil.TL.Serial import Serial  # noqa: E402
 
 import harness  # noqa: E402
 
 PORT = sys.argv[1]
-# A move is over for the driver when two positions agree that it reads a second apart. A tenth of that shows the same of these motors, which are never so slow.
-mercury.time = types.SimpleNamespace(sleep=lambda seconds: time.sleep(seconds / 10))
 # What friction leaves of a move at factory gains.
 NEAR = 30
 
@@ -43,12 +39,14 @@ def position(unit):
 
 
 # As the package's own example has it: the write termination is that of reading then, so that an end of text follows every line.
-line = Serial({"name": "line", "init": {"port": PORT, "baudrate": 9600, "timeout": 0.5, "read_termination": "\x03"}})
+line = Serial({"name": "line", "init": {"port": PORT, "baudrate": 9600, "timeout": 2, "read_termination": "\x03"}})
 line.init()
 stage = Mercury(line, {"name": "stage", "init": {}})
 stage.init()
 # It asks each address twice and reads one answer: the second one is taken for the next address's.
 check("init", stage._board_numbers == [0, 1, 3, 4], stage._board_numbers)
+# From here on only what answers is asked.
+line._port.timeout = harness.PATIENCE_S
 
 for board, unit in [(0, 0), (3, 1)]:
     name = f"board {board}: "

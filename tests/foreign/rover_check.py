@@ -37,7 +37,7 @@ def given(device, addresses, holds):
 
 
 def main():
-    device = Basicmicro(sys.argv[1], 115200, timeout=0.2)
+    device = Basicmicro(sys.argv[1], 115200, timeout=1)
     first, count = int(sys.argv[2], 0), int(sys.argv[3])
     device.Open()
     addresses = list(range(first, first + count))

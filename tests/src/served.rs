@@ -12,7 +12,7 @@ use brushwork_plant::machine::{Machine, StreamIndex};
 use brushwork_plant::server::{Endpoint, Server, ServerOptions, SimHandle};
 use tempfile::TempDir;
 
-use crate::simulated::patient;
+use crate::simulated::{LATE_PTY, patient};
 
 /// A controller that is served, and how it is reached.
 pub struct Served<M: Machine> {
@@ -31,7 +31,7 @@ impl<M: Machine + 'static> Served<M> {
     pub fn on_pty(machine: M, options: &str) -> Self {
         let folder = tempfile::tempdir().expect("a temporary folder can be made");
         let link = folder.path().join("port");
-        let target = format!("{}{options}", link.display());
+        let target = format!("{}{options}{LATE_PTY}", link.display());
         Self::at(machine, &Endpoint::Pty { link }, folder, |_| target)
     }
 

@@ -16,7 +16,7 @@ def own_files(tmp_path, monkeypatch):
 
 
 def test_driving_moves_the_motor_and_leaves_it_standing(brushwork_simulator):
-    sim = brushwork_simulator("mcp266")
+    sim = brushwork_simulator("mcp266", transport="tcp")
     samples = brushwork.connect(sim.port).drive(motor=1, duty=20, seconds=0.5)
     velocities = [sample.readings["m1_velocity"] for sample in samples]
     assert max(velocity for velocity in velocities if velocity is not None) > 500
@@ -26,7 +26,7 @@ def test_driving_moves_the_motor_and_leaves_it_standing(brushwork_simulator):
 
 
 def test_a_motor_that_is_held_is_refused_with_a_sentence(brushwork_simulator):
-    sim = brushwork_simulator("mcp266", faults=["plant:locked-shaft,motor=1"])
+    sim = brushwork_simulator("mcp266", transport="tcp", faults=["plant:locked-shaft,motor=1"])
     with pytest.raises(brushwork.Refused, match="blocked"):
         brushwork.connect(f"{sim.port},stream=usb").drive(motor=1, speed=3000, seconds=60)
     assert sim.truth().axes[0].duty == 0.0
@@ -38,7 +38,8 @@ def test_one_set_point_is_wanted():
 
 
 def test_settings_are_read_written_and_read_back(brushwork_simulator):
-    unit = brushwork.connect(brushwork_simulator("mcp266").port)
+    # On a busy computer a pseudo-terminal may be late.
+    unit = brushwork.connect(brushwork_simulator("mcp266").port + ",latency=4000")
     before = unit.settings("motor1.velocity")
     assert before["motor1.velocity.qpps"].is_default
     planned = unit.write({"motor1.velocity.qpps": 12000}, dry_run=True)
@@ -49,13 +50,13 @@ def test_settings_are_read_written_and_read_back(brushwork_simulator):
 
 
 def test_a_value_out_of_range_is_refused(brushwork_simulator):
-    unit = brushwork.connect(brushwork_simulator("mcp266").port)
+    unit = brushwork.connect(brushwork_simulator("mcp266", transport="tcp").port)
     with pytest.raises(brushwork.NotTaken, match="qpps|QPPS"):
         unit.write({"motor1.velocity.qpps": -5})
 
 
 def test_stop_is_confirmed_and_a_dead_line_is_told(brushwork_simulator):
-    sim = brushwork_simulator("mcp266")
+    sim = brushwork_simulator("mcp266", transport="tcp")
     brushwork.connect(sim.port).stop()
     sim.close()
     with pytest.raises(brushwork.NoLink):

@@ -14,7 +14,8 @@ use brushwork_mcp_sim::settings::Settings;
 use brushwork_mcp_wire::packet_serial::Generation;
 use brushwork_plant::machine::StreamIndex;
 use brushwork_tests::program::{Child, Ending, Program};
-use brushwork_tests::simulated::{OnPty, PATIENT_TIME_OUT, is_at_rest, is_driven};
+use brushwork_tests::served::guardians_of;
+use brushwork_tests::simulated::{LATE_PTY, OnPty, OnTcp, PATIENT_TIME_OUT, is_at_rest, is_driven};
 use brushwork_tests::wait::{self, LIMIT};
 use brushwork_tests::{foreign, workspace};
 use rustix::process::Signal;
@@ -61,7 +62,7 @@ fn sim_ends_cleanly_on(signal: &str) {
     let mut sim = start(&["sim", "--pty", &text(&link), "--generation", "4"]);
     let greeting = sim.wait_for(&text(&link), LIMIT);
     wait::for_path(&link);
-    let status = json(&run(&["status", "--connect", &text(&link), "--json"]));
+    let status = json(&run(&["status", "--connect", &format!("{}{LATE_PTY}", text(&link)), "--json"]));
     println!("{greeting}: {status}");
     sim.signal(signal);
     let ending = sim.finish(LIMIT);
@@ -101,6 +102,7 @@ fn several_units_share_one_line() {
     let link = text(&folder.path().join("bus"));
     let mut sim = start(&["sim", "--pty", &link, "--port", "ttl1", "--address", "0x80,0x83"]);
     sim.wait_for(&link, LIMIT);
+    let link = format!("{link}{LATE_PTY}");
     for (address, code) in [("0x80", DONE), ("0x83", DONE), ("0x81", NO_LINK)] {
         let ending = run(&["status", "--connect", &link, "--address", address, "--json"]);
         assert_eq!(ending.status.code(), Some(code), "{address}: {ending:?}");
@@ -112,7 +114,7 @@ fn several_units_share_one_line() {
 
 #[test]
 fn stop_without_an_address_stops_every_unit_of_the_line_and_says_which_and_who_did_not_answer() {
-    let line = OnPty::line(&[0x80, 0x81, 0x85]);
+    let line = OnTcp::line(&[0x80, 0x81, 0x85]);
     line.set_all_going();
     let ending = run(&["stop", "--connect", &text(&line.port())]);
     assert_eq!(ending.status.code(), Some(DONE), "{ending:?}");
@@ -134,7 +136,7 @@ fn stop_without_an_address_stops_every_unit_of_the_line_and_says_which_and_who_d
 
 #[test]
 fn stop_with_addresses_stops_these_alone_and_names_the_one_that_does_not_answer() {
-    let line = OnPty::line(&[0x80, 0x81, 0x82]);
+    let line = OnTcp::line(&[0x80, 0x81, 0x82]);
     line.set_all_going();
     let port = text(&line.port());
     let ending = run(&["stop", "--connect", &port, "--address", "0x81,0x82"]);
@@ -152,7 +154,7 @@ fn stop_with_addresses_stops_these_alone_and_names_the_one_that_does_not_answer(
 #[test]
 fn stop_on_a_can_bus_stops_every_node_that_is_a_controller() {
     let nodes = [3, 5].map(|id| NodeId::new(id).expect("from 1 to 127"));
-    let bus = OnPty::nodes(&nodes, Form::Ascii);
+    let bus = OnTcp::nodes(&nodes, Form::Ascii);
     for id in [3, 5] {
         // SDO to the node, 2B: two bytes; objects 2020 and 2021 (commands 32 and 33), duty 0x3E80 of 0x7FFF.
         bus.receive(format!(":S60{id}N2B202000803E0000;:S60{id}N2B212000803E0000;").into_bytes());
@@ -170,7 +172,7 @@ fn stop_on_a_can_bus_stops_every_node_that_is_a_controller() {
 
 #[test]
 fn ctrl_c_of_a_drive_without_an_address_stops_the_other_units_of_the_line_too() {
-    let line = OnPty::line(&[0x80, 0x81]);
+    let line = OnTcp::line(&[0x80, 0x81]);
     line.set_all_going();
     let target = format!("{},stream=ttl1", line.port().display());
     for (address, after) in [(Some("0x80"), [false, true]), (None, [false, false])] {
@@ -194,7 +196,7 @@ fn ctrl_c_of_a_drive_without_an_address_stops_the_other_units_of_the_line_too() 
 
 #[test]
 fn however_a_drive_of_several_units_ends_none_of_them_is_left_driven() {
-    let line = OnPty::line(&[0x80, 0x81, 0x84]);
+    let line = OnTcp::line(&[0x80, 0x81, 0x84]);
     let target = format!("{},stream=ttl1", line.port().display());
     let words =
         ["drive", "--connect", &target, "--address", "0x80,0x81,0x84", "--motor", "both", "--duty", "30"];
@@ -212,7 +214,9 @@ fn however_a_drive_of_several_units_ends_none_of_them_is_left_driven() {
             if program.is_running() {
                 program.signal(signal);
             }
+            let number = program.id();
             let ending = program.finish(LIMIT);
+            leaves_the_line(number);
             (!ending.was_starved()).then_some(ending)
         });
         let ending = ending.expect("the program has the processor now and then");
@@ -234,14 +238,13 @@ fn drive_arguments(port: &Path, seconds: &str) -> Vec<String> {
     arguments.map(str::to_owned).to_vec()
 }
 
-fn driving(controller: &OnPty) -> Program {
-    let program = Program::start(BRUSHWORK, &drive_arguments(&controller.port(), "600"));
-    controller.wait_until("driven motors", is_driven);
-    program
+fn driving(controller: &OnTcp) -> Program {
+    let start = || Program::start(BRUSHWORK, &drive_arguments(&controller.port(), "600"));
+    guardian::started_driving(start, || controller.look(is_driven))
 }
 
 fn is_ended_by(signal: &str) {
-    let controller = OnPty::patient(Generation::Gen1);
+    let controller = OnTcp::patient(Generation::Gen1);
     let ending = (0..TRIES).find_map(|_| {
         let program = driving(&controller);
         program.signal(signal);
@@ -273,7 +276,7 @@ fn a_closed_terminal_stops_both_motors_before_the_program_ends() {
 
 #[test]
 fn a_closed_pipe_stops_both_motors_before_the_program_ends() {
-    let controller = OnPty::patient(Generation::Gen1);
+    let controller = OnTcp::patient(Generation::Gen1);
     let mut command = Command::new(BRUSHWORK);
     command.args(drive_arguments(&controller.port(), "600"));
     let mut program = Child::spawn(&command, [Stdio::null(), Stdio::piped(), Stdio::null()]);
@@ -287,8 +290,13 @@ fn a_closed_pipe_stops_both_motors_before_the_program_ends() {
     assert!(matches!(code, Some(INTERRUPTED | REFUSED)), "{code:?}");
 }
 
+/// Waits for the guardian of a program that has ended: until it has, it holds the connection.
+fn leaves_the_line(program: u32) {
+    wait::until("no guardian", || guardians_of(program).is_empty(), || "it is there".to_owned());
+}
+
 fn is_stopped_by_the_controller(signal: &str) {
-    let controller = OnPty::start(Generation::Gen1);
+    let controller = OnTcp::start(Generation::Gen1);
     let stopped = (0..TRIES).any(|_| {
         let mut program = driving(&controller);
         // Whatever is looked at below was alive until then, or had stopped the motors itself.
@@ -302,6 +310,7 @@ fn is_stopped_by_the_controller(signal: &str) {
         if by_time_out {
             off.assert_by_time_out(FACTORY_TIME_OUT);
         }
+        leaves_the_line(program.id());
         by_time_out
     });
     assert!(stopped, "the time-out stops the motors");
@@ -319,7 +328,7 @@ fn a_frozen_program_leaves_motors_that_the_controller_stops() {
 
 #[test]
 fn a_drive_that_is_over_stops_both_motors() {
-    let controller = OnPty::patient(Generation::Gen2);
+    let controller = OnTcp::patient(Generation::Gen2);
     let ending = (0..TRIES).find_map(|_| {
         let program = Program::start(BRUSHWORK, &drive_arguments(&controller.port(), "0.5"));
         let ending = program.finish(LIMIT);
@@ -337,7 +346,7 @@ fn driving_is_refused_without_a_time_out_and_nothing_moves() {
     let mut settings = Settings::factory(config.model, config.address.get());
     settings.streams[0].timeout_ms = 0;
     config.settings = Some(settings);
-    let controller = OnPty::start_with(config, StreamIndex::Usb);
+    let controller = OnTcp::start_with(config, StreamIndex::Usb);
     let program = Program::start(BRUSHWORK, &drive_arguments(&controller.port(), "1"));
     let ending = program.finish(LIMIT);
     assert_eq!(ending.status.code(), Some(REFUSED), "{ending:?}");
@@ -351,7 +360,7 @@ fn driving_is_refused_without_a_time_out_and_nothing_moves() {
 #[test]
 fn settings_that_contradict_each_other_are_told_before_the_write_and_at_every_read() {
     let controller = OnPty::start(Generation::Gen2);
-    let port = controller.port().to_string_lossy().into_owned();
+    let port = controller.target();
     let run = |arguments: &[&str]| {
         let words = [&["settings"], arguments, &["-c", &port]].concat();
         Program::start(BRUSHWORK, &words).finish(LIMIT)
@@ -377,7 +386,7 @@ fn a_tap_decodes_a_foreign_program_and_stops_its_motors_when_it_ends() {
     let controller = OnPty::start(Generation::Gen1);
     let folder = tempfile::tempdir().expect("a temporary folder");
     let tap = folder.path().join("tap");
-    let mut monitor = start(&["monitor", "--connect", &text(&controller.port()), "--pty", &text(&tap)]);
+    let mut monitor = start(&["monitor", "--connect", &controller.target(), "--pty", &text(&tap)]);
     wait::for_path(&tap);
 
     let script = workspace::root().join("tests/foreign/driving_client.py");
@@ -435,7 +444,7 @@ fn what_is_data_can_be_had_as_json() {
 #[test]
 fn reading_the_status_moves_nothing() {
     let controller = OnPty::start(Generation::Gen3);
-    let ending = run(&["status", "--connect", &text(&controller.port()), "--json"]);
+    let ending = run(&["status", "--connect", &controller.target(), "--json"]);
     assert_eq!(ending.status.code(), Some(DONE), "{ending:?}");
     assert!(controller.look(|unit| unit.view().axes.iter().all(|axis| axis.encoder_counts == 0)));
 }

@@ -15,7 +15,7 @@ use brushwork_mcp_wire::models::MODELS;
 use brushwork_mcp_wire::packet_serial::{Address, COMMANDS, Generation, Request, number};
 use brushwork_plant::machine::StreamIndex;
 use brushwork_tests::program::{Ending, Program};
-use brushwork_tests::simulated::{OnPty, is_driven};
+use brushwork_tests::simulated::{LATE_PTY, OnPty, is_driven};
 use brushwork_tests::wait::{self, LIMIT};
 use serde_json::Value;
 
@@ -26,6 +26,8 @@ const DONE: i32 = 0;
 const FAILED: i32 = 1;
 const USAGE: i32 = 2;
 const NO_LINK: i32 = 3;
+/// How often a drive is begun for which this machine may be too crowded.
+const TRIES: usize = 20;
 
 fn start(arguments: &[&str]) -> Program {
     Program::start(BRUSHWORK, arguments)
@@ -108,8 +110,11 @@ fn what_status_says_is_true(generation: &str) {
         "plant:hot-board=41.5",
     ]);
     sim.wait_for("Connect with", LIMIT);
-    let drive =
-        run(&["drive", "--connect", &link, "--motor", "2", "--duty", "-40", "--for", "0.4", "--json"]);
+    let link = format!("{link}{LATE_PTY}");
+    let words = ["drive", "--connect", &link, "--motor", "2", "--duty", "-40", "--for", "0.4", "--json"];
+    // On a busy machine the program or its controller may not be heard in time.
+    let is_heard = |drive: &Ending| !drive.was_starved() && !drive.found_silence();
+    let drive = (0..TRIES).map(|_| run(&words)).find(is_heard).expect("a machine with some room");
     assert_eq!(code(&drive), Some(DONE), "{drive:?}");
     assert!(drive.stdout.iter().all(|line| serde_json::from_str::<Value>(line).is_ok()), "{drive:?}");
 
@@ -174,6 +179,7 @@ fn a_bus_of_three_models_answers_each_at_its_address() {
         "mcp266,mcp233,roboclaw-2x7a",
     ]);
     sim.wait_for(&link, LIMIT);
+    let link = format!("{link}{LATE_PTY}");
     for (address, model) in [("0x80", "MCP266"), ("0x82", "MCP233"), ("0x87", "RoboClaw 2x7A")] {
         let status = json(&run(&["status", "--connect", &link, "--address", address, "--json"]));
         assert_eq!(status["identity"]["model"], model);
@@ -201,7 +207,7 @@ fn stop_stops_what_another_program_has_left_running_and_says_so() {
     let controller = OnPty::start_with(config, StreamIndex::Usb);
     for more in [&[][..], &["--json"]] {
         set_going(&controller);
-        let ending = run(&[&["stop", "--connect", &text(&controller.port())], more].concat());
+        let ending = run(&[&["stop", "--connect", &controller.target()], more].concat());
         assert_eq!(code(&ending), Some(DONE), "{ending:?}");
         let _ = controller.wait_until_off();
         let reported = ending.stdout.join("\n");

@@ -37,7 +37,7 @@ pub fn driving<M: Machine + 'static>(served: &Served<M>) -> Program {
 }
 
 /// The same of whatever program. Where this machine is too crowded for it or for the controller, it is tried again.
-fn started_driving(start: impl Fn() -> Program, drives: impl Fn() -> bool) -> Program {
+pub fn started_driving(start: impl Fn() -> Program, drives: impl Fn() -> bool) -> Program {
     for _ in 0..TRIES {
         let mut program = start();
         let drives_or_ended = || drives() || !program.is_running();

@@ -70,7 +70,7 @@ impl Port {
 
     /// As patient as the driver is; on a real computer, which may be busy, a good deal more.
     fn patience(&self, of_driver: Duration) -> Duration {
-        if self.virtual_line.is_some() { of_driver } else { of_driver.max(Duration::from_secs(2)) }
+        if self.virtual_line.is_some() { of_driver } else { of_driver.max(Duration::from_secs(6)) }
     }
 
     fn write(&mut self, bytes: &[u8]) {

@@ -26,7 +26,7 @@ fn text(path: &Path) -> String {
 }
 
 fn target(controller: &OnPty) -> String {
-    format!("{},stream=usb", text(&controller.port()))
+    format!("{},stream=usb", controller.target())
 }
 
 fn script(arguments: &[&str]) -> Program {

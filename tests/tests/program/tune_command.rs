@@ -1,4 +1,4 @@
-//! `brushwork tune` from outside, against a controller on a pseudo-terminal in real time: what is left in RAM and in EEPROM, exit codes,
+//! `brushwork tune` from outside, against a controller on a port of its own in real time: what is left in RAM and in EEPROM, exit codes,
 //! Ctrl-C at every stage. Which verdict a run comes to on a busy machine is not asked here; that it is told alike everywhere is.
 #![cfg(unix)]
 
@@ -15,7 +15,7 @@ use brushwork_mcp_wire::packet_serial::Generation;
 use brushwork_plant::machine::StreamIndex;
 use brushwork_plant::world::WorldAction;
 use brushwork_tests::program::{Ending, Program};
-use brushwork_tests::simulated::{OnPty, is_driven};
+use brushwork_tests::simulated::{OnPort, is_driven};
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::report::Verdict;
 use brushwork_values::Motor;
@@ -40,19 +40,32 @@ const LIMIT: Duration = Duration::from_secs(240);
 const USERS_MS: u32 = 1_300;
 
 /// A controller and a folder for what is kept and written.
-struct Bench {
-    controller: OnPty,
+struct Bench<const IS_PTY: bool> {
+    controller: OnPort<IS_PTY>,
     folder: TempDir,
 }
 
-impl Bench {
+impl Bench<false> {
     fn new(change: impl FnOnce(&mut Settings)) -> Self {
+        Self::on_port(change)
+    }
+}
+
+impl Bench<true> {
+    /// On a pseudo-terminal, which is late on a busy machine: a run there ends as it may.
+    fn on_pty(change: impl FnOnce(&mut Settings)) -> Self {
+        Self::on_port(change)
+    }
+}
+
+impl<const IS_PTY: bool> Bench<IS_PTY> {
+    fn on_port(change: impl FnOnce(&mut Settings)) -> Self {
         let mut config = ControllerConfig { generation: Generation::Gen2, ..ControllerConfig::default() };
         let mut settings = Settings::factory(config.model, config.address.get());
         settings.streams[0].timeout_ms = USERS_MS;
         change(&mut settings);
         config.settings = Some(settings);
-        let controller = OnPty::start_with(config, StreamIndex::Usb);
+        let controller = OnPort::start_with(config, StreamIndex::Usb);
         Self { controller, folder: tempfile::tempdir().expect("a folder") }
     }
 
@@ -67,7 +80,7 @@ impl Bench {
 
     /// The same with any loop.
     fn tune_loop(&self, which: &str, arguments: &[&str]) -> Program {
-        let target = format!("{},stream=usb", self.controller.port().display());
+        let target = format!("{},stream=usb", self.controller.target());
         let mut command = std::process::Command::new(BRUSHWORK);
         command.args(["tune", which, "-c", &target, "--report"]).arg(self.report_path()).args(arguments);
         for name in ["HOME", "XDG_DATA_HOME", "XDG_CONFIG_HOME", "XDG_STATE_HOME"] {
@@ -115,7 +128,7 @@ fn replayed(path: &Path) -> Ending {
 
 #[test]
 fn saved_gains_are_in_ram_and_in_eeprom_with_the_users_time_out_and_the_report_replays() {
-    let bench = Bench::new(|_| {});
+    let bench = Bench::on_pty(|_| {});
     let before = bench.held();
     let ending = bench.tune(&["--save", "--level", "40"]).finish(LIMIT);
     let report = bench.report();
@@ -137,7 +150,7 @@ fn saved_gains_are_in_ram_and_in_eeprom_with_the_users_time_out_and_the_report_r
 
 #[test]
 fn torque_mode_is_refused_before_anything_moves_and_the_report_says_so() {
-    let bench = Bench::new(|settings| {
+    let bench = Bench::on_pty(|settings| {
         let motion = &mut settings.motors[0].motion;
         (motion.inductance_raw, motion.resistance_raw) = (67_109, 134_217_728);
     });
@@ -154,7 +167,9 @@ fn a_reversed_encoder_is_refused_and_its_report_replays_to_the_same_code() {
     let bench = Bench::new(|_| {});
     let before = bench.held();
     bench.controller.apply(WorldAction::ReverseEncoder { motor: Motor::M1, on: true });
-    let ending = bench.tune(&["--dry-run", "--json"]).finish(LIMIT);
+    let run = || bench.tune(&["--dry-run", "--json"]).finish(LIMIT);
+    let ending = (0..ATTEMPTS).map(|_| run()).find(|ending| code(ending) != Some(TOO_LATE));
+    let ending = ending.expect("a computer that is in time now and then");
     assert_eq!(code(&ending), Some(REFUSED), "{ending:?}");
     let reported: serde_json::Value = serde_json::from_str(&ending.stdout.join("\n")).expect("JSON");
     assert_eq!(reported["verdict"], "refused", "{reported}");
@@ -182,7 +197,7 @@ const STAGES: [&str; 6] = [
 /// The stages that come before the first verdict: every run reaches them, however crowded the computer is.
 const BEFORE_ANY_VERDICT: usize = 4;
 
-/// Runs that a crowded computer may refuse before they come to one of the later stages.
+/// Runs that a crowded computer may be too late for, or refuse before they come to one of the later stages.
 const ATTEMPTS: usize = 5;
 
 /// One stage after another: six programs with six controllers at once would be the crowd that makes a run late.
@@ -207,7 +222,8 @@ fn interrupt_at(stage: &str) -> bool {
         program.signal("INT");
     }
     let ending = program.finish(LIMIT);
-    assert_eq!(code(&ending), Some(if reached { INTERRUPTED } else { REFUSED }), "{stage}: {ending:?}");
+    let wanted = if reached { &[INTERRUPTED][..] } else { &[REFUSED, TOO_LATE] };
+    assert!(code(&ending).is_some_and(|code| wanted.contains(&code)), "{stage}: {ending:?}");
     bench.controller.wait_until("both bridges off", |unit| !is_driven(unit));
     assert_eq!(bench.held(), before, "{stage}: {ending:?}");
     reached
@@ -229,8 +245,9 @@ fn a_run_that_this_computer_was_too_late_for_says_so_and_ends_as_no_signal_does(
     program.signal("CONT");
     guardian::signal(program.id(), Signal::CONT);
     let ending = program.finish(LIMIT);
-    assert!([Some(TUNED), Some(TUNED_WITH_WARNINGS), Some(REFUSED)].contains(&code(&ending)), "{ending:?}");
-    if code(&ending) == Some(REFUSED) {
+    let wanted = [TUNED, TUNED_WITH_WARNINGS, REFUSED, TOO_LATE];
+    assert!(code(&ending).is_some_and(|code| wanted.contains(&code)), "{ending:?}");
+    if matches!(code(&ending), Some(REFUSED | TOO_LATE)) {
         let said = [ending.stdout.join("\n"), ending.stderr.join("\n")].concat();
         assert!(said.contains("his computer answered late"), "{ending:?}");
     }

@@ -12,7 +12,7 @@ use brushwork_tests::foreign::is_left_out;
 use brushwork_tests::hands::{Hands, Key};
 use brushwork_tests::program::{Ending, Program};
 use brushwork_tests::screen::{self, Picture, Screen};
-use brushwork_tests::simulated::{OnPty, is_driven};
+use brushwork_tests::simulated::{OnPort, OnPty, OnTcp, is_driven};
 use brushwork_tests::wait::{self, LIMIT};
 
 const BRUSHWORK: &str = env!("CARGO_BIN_EXE_brushwork-for-tests");
@@ -28,9 +28,12 @@ fn window_on(display: &str) -> Command {
 }
 
 /// A window that was opened on a controller, and what it looks like once its indicators are green.
-pub fn connected_window(screen: &Screen, controller: &OnPty) -> (Program, Picture) {
+pub fn connected_window<const IS_PTY: bool>(
+    screen: &Screen,
+    controller: &OnPort<IS_PTY>,
+) -> (Program, Picture) {
     let mut command = window_on(screen.display());
-    command.arg("--open").arg(controller.port());
+    command.arg("--open").arg(controller.target());
     let window = Program::spawn(command);
     match screen.wait_for(|picture| picture.green() >= GREEN_OF_INDICATORS) {
         Some(picture) => (window, picture),
@@ -79,7 +82,7 @@ fn signal_stops_and_closes(name: &str) {
     if is_left_out("xvfb") {
         return;
     }
-    let controller = OnPty::patient(Generation::Gen1);
+    let controller = OnTcp::patient(Generation::Gen1);
     let screen = Screen::start();
     let (mut window, _) = connected_window(&screen, &controller);
     let duty = Request::new(Address::ALL[0], 34, &[16_384, -16_384]);
@@ -139,7 +142,7 @@ fn hands_on_keyboard_and_mouse_arm_drive_and_stop_a_motor() {
     if is_left_out("xvfb") {
         return;
     }
-    let controller = OnPty::patient(Generation::Gen1);
+    let controller = OnTcp::patient(Generation::Gen1);
     let screen = Screen::start();
     let (mut window, _) = connected_window(&screen, &controller);
     let hands = Hands::at(screen.display());
@@ -164,7 +167,7 @@ fn hands_on_keyboard_and_mouse_arm_drive_and_stop_a_motor() {
 
 /// Arms, and finds the slider. A machine
 /// that is too busy to paint the window in time disarms it, so this may have to be done again.
-fn drives_by_hand(hands: &Hands, controller: &OnPty) -> bool {
+fn drives_by_hand(hands: &Hands, controller: &OnTcp) -> bool {
     hands.press(&[Key::Escape]);
     hands.arm();
     controller.let_pass(Duration::from_millis(1500));
