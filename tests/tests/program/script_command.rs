@@ -10,7 +10,7 @@ use brushwork_mcp_wire::crc::crc16_xmodem;
 use brushwork_mcp_wire::packet_serial::{Generation, number};
 use brushwork_plant::world::Content;
 use brushwork_tests::program::{Ending, Program};
-use brushwork_tests::simulated::{OnPty, is_at_rest, is_driven};
+use brushwork_tests::simulated::{OnPort, OnPty, OnTcp, is_at_rest, is_driven};
 use brushwork_tests::wait::LIMIT;
 use serde_json::Value;
 
@@ -25,7 +25,7 @@ fn text(path: &Path) -> String {
     path.to_string_lossy().into_owned()
 }
 
-fn target(controller: &OnPty) -> String {
+fn target<const IS_PTY: bool>(controller: &OnPort<IS_PTY>) -> String {
     format!("{},stream=usb", controller.target())
 }
 
@@ -79,7 +79,7 @@ fn what_is_compiled_here_is_not_sent_unless_the_controller_is_said_to_be_simulat
 fn a_started_script_ends_with_its_motors_on_ctrl_c() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = text(&driving(&folder));
-    let controller = OnPty::start(Generation::Gen2);
+    let controller = OnTcp::start(Generation::Gen2);
     let mut program = script(&["start", &file, "--simulated", "--to", &target(&controller)]);
     controller.wait_until("a script that drives", is_driven);
     assert!(program.is_running() && controller.look(runs));
