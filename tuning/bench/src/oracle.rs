@@ -62,7 +62,7 @@ impl<U: Unit> Search<'_, U> {
             Method::Pd => Gains { position: Some(Pid { p: a, i: 0.0, d: b }), ..Gains::default() },
             Method::Pid => Gains {
                 position: Some(Pid { p: a, i: c, d: b }),
-                max_integral: INTEGRAL_DUTY * self.truth.qpps / c.max(1e-9),
+                max_integral: if c > 0.0 { INTEGRAL_DUTY * self.truth.qpps / c } else { 0.0 },
                 ..Gains::default()
             },
             Method::Piv => Gains {
@@ -173,6 +173,8 @@ impl<U: Unit> Search<'_, U> {
                 }
             }
             Method::Pid => {
+                // Where friction and load are small, a PD is the best PID.
+                self.plain_pd(&mut points);
                 for n in 2..10 {
                     let derivative = 0.2 * f64::from(n) * self.truth.tau_s;
                     for integral in [1.0, 3.0, 9.0].map(|times| times * self.truth.tau_s.max(0.05)) {
@@ -181,12 +183,7 @@ impl<U: Unit> Search<'_, U> {
                     }
                 }
             }
-            Method::Pd => {
-                for n in 0..13 {
-                    let time = 0.125 * f64::from(n) * self.truth.tau_s;
-                    self.shares(|p| [p, p * time, 0.0], 2000.0, &[1.0, 0.85, 0.7, 0.5, 0.3], &mut points);
-                }
-            }
+            Method::Pd => self.plain_pd(&mut points),
             Method::Piv => {
                 for n in 0..6 {
                     let time = times(n, 6);
@@ -199,6 +196,13 @@ impl<U: Unit> Search<'_, U> {
             }
         }
         points
+    }
+
+    fn plain_pd(&self, points: &mut Vec<Point>) {
+        for n in 0..13 {
+            let time = 0.125 * f64::from(n) * self.truth.tau_s;
+            self.shares(|p| [p, p * time, 0.0], 2000.0, &[1.0, 0.85, 0.7, 0.5, 0.3], points);
+        }
     }
 
     fn shares(&self, of: impl Fn(f64) -> Point, top: f64, shares: &[f64], into: &mut Vec<Point>) {

@@ -20,6 +20,7 @@ mod tests {
     use super::*;
     use crate::model::{Lag, PlantModel};
     use crate::plain_law::PlainLaw;
+    use crate::score::POSITION_OVERSHOOT;
 
     fn task(level: f64) -> Task<PlainLaw> {
         let lag = Lag { filter_s: 0.004, delay_ticks: 1.0 };
@@ -61,6 +62,23 @@ mod tests {
                 assert!(cost <= 1.1 * before, "{name} at level {level}: {cost} after {before}");
                 before = cost;
             }
+        }
+    }
+
+    #[test]
+    fn a_pid_is_never_worse_than_the_pd_that_it_may_be() {
+        for (tau_s, gain_counts_per_s) in
+            [(0.012, 150_000.0), (0.05, 3_000.0), (0.1, 30_000.0), (1.0, 30_000.0)]
+        {
+            let task = task(50.0);
+            let plant = PlantModel { tau_s, gain_counts_per_s, ..task.plant };
+            let task = Task { plant, qpps: 0.95 * gain_counts_per_s, ..task };
+            let cost = |design: Option<Design>| {
+                design.map(|design| design.score.cost(POSITION_OVERSHOOT)).expect("gains")
+            };
+            // A PD has no dead zone of a count, and each search ends somewhere near its best.
+            let (pd, pid) = (cost(design_pd(&task)), cost(design_pid(&task)));
+            assert!(pid <= 1.15 * pd, "tau {tau_s} s: {pid} with an integral, {pd} without");
         }
     }
 

@@ -33,6 +33,36 @@ const INTEGRAL_DEADZONE: f64 = 1.0;
 /// Share of the lag that no model has which is left to be designed for where gains are raised on the machine: with none of it 2 of 96 PD and PID loops of the bench
 /// were called tuned at a true Ms of 1.9, with all of it the cost is a seventh higher in the median.
 const RAISED_SHARE: f64 = 0.5;
+/// How gains are refined.
+struct Refinement {
+    /// The gains that are moved together.
+    moves: &'static [Move],
+    /// The first step, relative; the root of it is the next.
+    first_step: f64,
+    /// How often a step that pays is taken in a row at the most.
+    repeats: usize,
+}
+
+/// PD and PID: the best gains lie along a ridge, where they rise together. With single moves the cost on the model was more than a fifth above what the best of 20 others
+/// reached on 30 of 200 Motion Minds (seed 7, PID), and 67.5 and 60.5 % of the PIDs of seeds 7 and 11 were good; with these 71.5 and 65.5 %.
+const DIRECT: Refinement = Refinement {
+    moves: &[
+        Move::position(true, false, false),
+        Move::position(false, false, true),
+        Move::position(false, true, false),
+        Move::position(true, false, true),
+        Move::position(true, true, true),
+    ],
+    first_step: 1.3,
+    repeats: 3,
+};
+/// PIV: searched on a grid of three gains already. Joint moves gave no better gains on 400 motors, and three accepted ones fewer of seed 7.
+const CASCADE: Refinement = Refinement {
+    moves: &[Move::position(true, false, false), Move::velocity(true, false), Move::velocity(false, true)],
+    first_step: 1.2,
+    repeats: 1,
+};
+const ROUNDS: usize = 4;
 /// How often coarse gains go on by a step at the most, and how much softer they become where none keeps its bounds.
 const MOST_STEPS: usize = 24;
 const SOFTER: f64 = 0.8;
@@ -44,7 +74,7 @@ pub fn design_pd<L: Law>(task: &Task<L>) -> Option<Design> {
     let loops = Loops::new(task);
     let base = Gains { deadzone_counts: deadzone(task), ..Gains::default() };
     let best = search_pd(&loops, task, base)?;
-    let best = stepped(&loops, task, refine(&loops, task, best), false)?;
+    let best = stepped(&loops, task, refine(&loops, task, best, &DIRECT), false)?;
     finish(&loops, task, Some(best).filter(|best| loops.stable(task, &best.gains)))
 }
 
@@ -54,10 +84,22 @@ pub fn design_pid<L: Law>(task: &Task<L>) -> Option<Design> {
     let task = &direct(task);
     let loops = Loops::new(task);
     let base = Gains { deadzone_counts: deadzone(task).max(INTEGRAL_DEADZONE), ..Gains::default() };
-    // The integral takes phase: the PD below it is kept a little softer.
+    // The integral takes phase: the PD below it is kept a little softer. Where friction and load are small none is needed.
     let inner = Task { goal: Goal { ms: 1.0 + 0.8 * (task.goal.ms - 1.0), ..task.goal }, ..*task };
-    let mut best = search_pd(&loops, &inner, base)?;
-    let proportional = best.gains.position?;
+    let plain = search_pd(&loops, task, base);
+    let softer = search_pd(&loops, &inner, base).map(|best| with_integral(&loops, task, best));
+    let best = [plain, softer]
+        .into_iter()
+        .flatten()
+        .map(|best| refine(&loops, task, best, &DIRECT))
+        .reduce(cheaper)?;
+    let best = stepped(&loops, task, best, true)?;
+    finish(&loops, task, Some(best).filter(|best| loops.stable(task, &best.gains)))
+}
+
+/// A PD with the integral that suits it best, or as it is.
+fn with_integral<L: Law>(loops: &Loops, task: &Task<L>, mut best: Candidate) -> Candidate {
+    let Some(proportional) = best.gains.position else { return best };
     // A sum that has no fine bound has to grow slowly.
     let (longest, ratio) = task.law.facts().integral_times;
     for time_s in (0..12).map(|n| longest * task.plant.tau_s.max(0.03) * ratio.powi(n)) {
@@ -67,16 +109,16 @@ pub fn design_pid<L: Law>(task: &Task<L>) -> Option<Design> {
             for max_integral in sum_bounds(task, &pid) {
                 let gains = Gains { position: Some(pid), max_integral, ..best.gains };
                 if loops.within(task, &gains).is_some() && loops.stable(task, &gains) {
-                    let other = candidate(task, gains);
-                    if other.cost < best.cost {
-                        best = other;
-                    }
+                    best = cheaper(best, candidate(task, gains));
                 }
             }
         }
     }
-    let best = stepped(&loops, task, refine(&loops, task, best), true)?;
-    finish(&loops, task, Some(best).filter(|best| loops.stable(task, &best.gains)))
+    best
+}
+
+fn cheaper(best: Candidate, other: Candidate) -> Candidate {
+    if other.cost < best.cost { other } else { best }
 }
 
 /// The bounds that the integral may be given: what friction and the load step eat, half as much again.
@@ -157,7 +199,7 @@ pub fn design_piv<L: Law>(task: &Task<L>) -> Option<Design> {
             }
         }
     }
-    let best = refine(&loops, task, best?);
+    let best = refine(&loops, task, best?, &CASCADE);
     finish(&loops, task, Some(best).filter(|best| loops.stable(task, &best.gains)))
 }
 
@@ -174,35 +216,58 @@ fn search_pd<L: Law>(loops: &Loops, task: &Task<L>, base: Gains) -> Option<Candi
     best
 }
 
-/// Small steps in each gain, as long as they pay.
-fn refine<L: Law>(loops: &Loops, task: &Task<L>, mut best: Candidate) -> Candidate {
-    let mut step = 1.2_f64;
-    for _ in 0..4 {
-        for n in 0..10 {
-            let by = if n % 2 == 0 { step } else { 1.0 / step };
-            let mut gains = best.gains;
-            let Some(position) = gains.position.as_mut() else { return best };
-            match n / 2 {
-                0 => position.p *= by,
-                1 => position.d *= by,
-                2 => {
-                    position.i *= by;
-                    gains.max_integral /= by;
+/// Small steps in gains, one by one and together, as long as they pay.
+fn refine<L: Law>(loops: &Loops, task: &Task<L>, mut best: Candidate, how: &Refinement) -> Candidate {
+    let mut step = how.first_step;
+    for _ in 0..ROUNDS {
+        for (moved, by) in how.moves.iter().flat_map(|moved| [(*moved, step), (*moved, 1.0 / step)]) {
+            // What pays once may pay again.
+            for _ in 0..how.repeats {
+                let Some(gains) = moved.of(&best.gains, by) else { break };
+                if loops.within(task, &gains).is_none() || !loops.stable(task, &gains) {
+                    break;
                 }
-                3 => gains.velocity.p *= by,
-                _ => gains.velocity.i *= by,
-            }
-            if gains == best.gains || loops.within(task, &gains).is_none() || !loops.stable(task, &gains) {
-                continue;
-            }
-            let other = candidate(task, gains);
-            if other.cost < best.cost {
+                let other = candidate(task, gains);
+                if other.cost >= best.cost {
+                    break;
+                }
                 best = other;
             }
         }
         step = step.sqrt();
     }
     best
+}
+
+/// Gains that are moved together.
+#[derive(Clone, Copy)]
+struct Move {
+    position: (bool, bool, bool),
+    velocity: (bool, bool),
+}
+
+impl Move {
+    const fn position(p: bool, i: bool, d: bool) -> Self {
+        Self { position: (p, i, d), velocity: (false, false) }
+    }
+
+    const fn velocity(p: bool, i: bool) -> Self {
+        Self { position: (false, false, false), velocity: (p, i) }
+    }
+
+    /// Gains moved by a factor; `None` where that changes nothing.
+    fn of(self, gains: &Gains, by: f64) -> Option<Gains> {
+        let factor = |is_moved: bool| if is_moved { by } else { 1.0 };
+        let (p, i, d) = self.position;
+        let Pid { p: kp, i: ki, d: kd } = gains.position?;
+        let position = Pid { p: factor(p) * kp, i: factor(i) * ki, d: factor(d) * kd };
+        let (vp, vi) = self.velocity;
+        let velocity =
+            Pid { p: factor(vp) * gains.velocity.p, i: factor(vi) * gains.velocity.i, ..gains.velocity };
+        let max_integral = gains.max_integral / factor(i && ki > 0.0);
+        let moved = Gains { position: Some(position), velocity, max_integral, ..*gains };
+        (moved != *gains).then_some(moved)
+    }
 }
 
 fn candidate<L: Law>(task: &Task<L>, gains: Gains) -> Candidate {

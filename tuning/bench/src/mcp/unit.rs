@@ -21,27 +21,35 @@ use serde::{Deserialize, Serialize};
 /// Position limits of a trial, counts: none to speak of.
 const WIDE: (i64, i64) = (-2_000_000_000, 2_000_000_000);
 
-/// The optima of one plant. PID is measured against the better of PD and PIV.
+/// The optima of one plant.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PacketOptima {
     /// Velocity PI.
     pub velocity: Option<Optimum>,
     /// Position PD.
     pub pd: Option<Optimum>,
+    /// Position PID.
+    pub pid: Option<Optimum>,
     /// Position PIV.
     pub piv: Option<Optimum>,
 }
 
 impl Optima for PacketOptima {
     fn worked_out(of: impl Fn(Method) -> Option<Optimum>) -> Self {
-        Self { velocity: of(Method::Velocity), pd: of(Method::Pd), piv: of(Method::Piv) }
+        Self {
+            velocity: of(Method::Velocity),
+            pd: of(Method::Pd),
+            pid: of(Method::Pid),
+            piv: of(Method::Piv),
+        }
     }
 
     fn of(&self, method: Method) -> Option<Optimum> {
         match method {
             Method::Velocity => self.velocity,
             Method::Pd => self.pd,
-            Method::Piv | Method::Pid => self.piv,
+            Method::Pid => self.pid,
+            Method::Piv => self.piv,
         }
     }
 }
