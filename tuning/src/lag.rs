@@ -245,7 +245,13 @@ impl<'a, L: Law> Known<'a, L> {
         };
         Self {
             stretches,
-            noises: stretches.iter().map(|stretch| noise(&stretch.record).hypot(PRIORS.duty)).collect(),
+            noises: stretches
+                .iter()
+                .map(|stretch| {
+                    let heard = noise(&stretch.record).hypot(PRIORS.duty);
+                    heard.max(rounding_between_plateaus(plant, law, &stretch.gains, qpps))
+                })
+                .collect(),
             plant: *plant,
             law: *law,
             qpps,
@@ -365,6 +371,23 @@ impl<L: Law> LeastSquaresProblem<f64, Dyn, U6> for Problem<'_, L> {
         let slopes = self.slopes();
         Some(nalgebra::OMatrix::<f64, Dyn, U6>::from_fn(slopes.nrows(), |r, c| slopes[(r, c)]))
     }
+}
+
+/// What the rounding of counts does to the duty while the speed changes, where each speed that can be commanded is a whole number of counts in a tick: at such a
+/// speed the count of each tick is the same, so that plateaus are quiet and tell nothing of it.
+fn rounding_between_plateaus<L: Law>(plant: &PlantModel, law: &L, gains: &Gains, qpps: f64) -> f64 {
+    if !goes_by_whole_counts(law) {
+        return 0.0;
+    }
+    let tick_s = law.tick_s();
+    LoopPlant::new(DiscretePlant::of(plant, tick_s), law, law.facts().usual_lag)
+        .margins(gains, qpps)
+        .noise_duty
+}
+
+/// Whether each speed that can be commanded is a whole number of counts in a tick.
+pub(crate) fn goes_by_whole_counts<L: Law>(law: &L) -> bool {
+    law.facts().speed_step * law.tick_s() > 0.99
 }
 
 /// Deviation of the duty about its trend in the second halves of the plateaus: the median of those that have five readings.

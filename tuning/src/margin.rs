@@ -4,6 +4,7 @@ use crate::cause::Cause;
 use crate::design::Task;
 use crate::experiment::rest;
 use crate::experiment_guard::ExperimentGuard;
+use crate::lag::goes_by_whole_counts;
 use crate::law::Law;
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::model::{Gains, Pid};
@@ -14,6 +15,8 @@ use crate::ticks::TickLoop;
 
 /// Gains tried, as multiples of the proposed ones, up to the margin that is wanted.
 const FACTORS: [f64; 7] = [1.2, 1.4, 1.6, 1.8, 2.0, 2.5, DERIVATIVE_FACTOR];
+/// The same where each of them takes a stop, since registers are written at rest only.
+const FACTORS_AT_REST: [f64; 3] = [1.4, 2.0, DERIVATIVE_FACTOR];
 /// The highest multiple that is wanted of a velocity loop that was not heard to oscillate.
 const MOST_WANTED: f64 = 2.0;
 /// Shares of the gains tried where they oscillate as they are.
@@ -29,6 +32,9 @@ const MS_ALLOWED: f64 = 1.25;
 /// Setpoint of the trial and height of its steps, as shares of full speed.
 const SPEED: f64 = 0.30;
 const STEP: (f64, f64) = (0.02, 0.08);
+/// The least speed of a loop that starts from rest each time, share of full speed, and what is left at the least to accelerate with, duty.
+const LEAST_FROM_REST: f64 = 0.06;
+const LEAST_ACCELERATING: f64 = 0.05;
 /// The duty that a step asks for at once at the highest gain tried: as much as leaves the backlash of a gear, where a shaft does not oscillate.
 const STEP_DUTY: f64 = 0.3;
 /// How long a gain is tried, in lags of the loop, and the bounds, s.
@@ -114,13 +120,24 @@ pub(crate) fn scaled(gains: &Gains, factor: f64) -> Gains {
     Gains { velocity: Pid { p: factor * v.p, i: factor * v.i, d: factor * v.d }, ..*gains }
 }
 
+/// What is raised of a loop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Part {
+    /// All of a velocity loop.
+    Whole,
+    /// Of a loop that acts on the duty directly its derivative alone, under a proportional part to a target so far away that it is a duty.
+    DerivativeByPositions,
+    /// The same by speeds, where speed commands act through the same gains.
+    DerivativeBySpeeds,
+}
+
 /// A loop whose gains are raised: how it is written, and how the motor is kept turning under it.
 struct Raised<'t, L: Law> {
     task: &'t Task<L>,
     /// The gains that are raised.
     inner: Gains,
-    /// Of a loop that acts on the duty directly: its derivative alone, under a proportional part to a target so far away that it is a duty.
-    is_direct: bool,
+    /// Which of them.
+    part: Part,
     /// Setpoints of the steps, counts/s.
     speeds: (f64, f64),
     /// It goes to and fro about this count: in a travel, and wherever the position is the loop.
@@ -142,32 +159,32 @@ impl<'t, L: Law> Raised<'t, L> {
     ) -> Result<Self, Cause> {
         let is_free = excitation == Excitation::Free;
         let is_fine = SPEED * task.qpps * task.law.tick_s() > LEAST_OF_DERIVATIVE;
-        let is_direct = gains.velocity == Pid::default() && is_fine && (!is_free || has_room(guard, task));
-        if !is_free || is_direct {
+        let at_rest = guard.facts.writes_at_rest;
+        let part = match gains.velocity == Pid::default() {
+            true if at_rest => Part::DerivativeBySpeeds,
+            true if is_fine && (!is_free || has_room(guard, task)) => Part::DerivativeByPositions,
+            _ => Part::Whole,
+        };
+        let goes_to_and_fro = at_rest || part == Part::DerivativeByPositions;
+        if !is_free || goes_to_and_fro {
             guard.duty(0.0)?;
             rest(guard, task.plant.tau_s, task.qpps)?;
         }
         let tick_s = task.law.tick_s();
         let travel = match excitation {
             Excitation::Window(width) => Some(guard.room_counts().unwrap_or(width).min(width)),
-            Excitation::Free => is_direct.then_some(FREE_TRAVEL_S * task.qpps),
+            Excitation::Free => goes_to_and_fro.then_some(FREE_TRAVEL_S * task.qpps),
         };
-        let inner = if is_direct { *gains } else { velocity_loop_of(gains) };
+        let inner = if part == Part::DerivativeByPositions { *gains } else { velocity_loop_of(gains) };
         let middle = between_counts(SPEED * task.qpps, tick_s);
-        let steps = Self {
-            task,
-            inner,
-            is_direct,
-            speeds: (middle, middle),
-            about: None,
-            far: 0.0,
-            side: -1.0,
-            tried_s,
-        };
+        let steps =
+            Self { task, inner, part, speeds: (middle, middle), about: None, far: 0.0, side: -1.0, tried_s };
         if let Some(room) = travel {
-            let speed = between_counts((INSIDE_SHARE * room / tried_s).min(SPEED * task.qpps), tick_s);
+            let most = if at_rest { fastest_from_rest(tried_s, task) } else { SPEED * task.qpps };
+            let speed = between_counts((INSIDE_SHARE * room / tried_s).min(most), tick_s);
+            let tried_s = if at_rest { tried_s.max(turning_s(speed, task) / (1.0 - HEARD)) } else { tried_s };
             let about = guard.points.last().map(|point| point.counts);
-            return Ok(Self { speeds: (-speed, speed), about, far: INSIDE_FAR * room, ..steps });
+            return Ok(Self { speeds: (-speed, speed), about, far: INSIDE_FAR * room, tried_s, ..steps });
         }
         let wanted = steps.wanted(plant);
         let gain = inner.velocity.p.max(inner.position.map_or(0.0, |position| position.d));
@@ -178,7 +195,8 @@ impl<'t, L: Law> Raised<'t, L> {
 
     /// The multiple that is wanted, as far as the model itself stays calm under it.
     fn wanted(&self, plant: &LoopPlant) -> f64 {
-        let wanted = if self.is_direct { DERIVATIVE_FACTOR } else { wanted_factor(self.task.goal.ms) };
+        let wanted =
+            if self.part != Part::Whole { DERIVATIVE_FACTOR } else { wanted_factor(self.task.goal.ms) };
         wanted.min(self.highest_calm(plant))
     }
 
@@ -192,9 +210,18 @@ impl<'t, L: Law> Raised<'t, L> {
         FACTORS.into_iter().take_while(is_calm).fold(1.0, f64::max)
     }
 
+    /// The multiples that are tried.
+    fn factors(&self) -> &'static [f64] {
+        if self.task.law.facts().writes_at_rest { &FACTORS_AT_REST } else { &FACTORS }
+    }
+
     /// The gains of a multiple.
     fn gains(&self, factor: f64) -> Gains {
-        let Some(position) = self.inner.position.filter(|_| self.is_direct) else {
+        if self.part == Part::DerivativeBySpeeds {
+            let velocity = Pid { p: factor * self.inner.velocity.p, ..self.inner.velocity };
+            return Gains { velocity, ..self.inner };
+        }
+        let Some(position) = self.inner.position.filter(|_| self.part == Part::DerivativeByPositions) else {
             return scaled(&self.inner, factor);
         };
         let d = factor * position.d;
@@ -207,7 +234,11 @@ impl<'t, L: Law> Raised<'t, L> {
 
     fn write(&self, guard: &mut ExperimentGuard<'_, L>, factor: f64) -> Result<(), Cause> {
         let gains = self.gains(factor);
-        if !self.is_direct {
+        if guard.facts.writes_at_rest {
+            guard.duty(0.0)?;
+            rest(guard, self.task.plant.tau_s, self.task.qpps)?;
+        }
+        if self.part != Part::DerivativeByPositions {
             return guard.write_gains(&self.task.law, &gains, self.task.qpps).map(|_| ());
         }
         let travel = guard.proposed_travel(self.task.qpps);
@@ -221,7 +252,7 @@ impl<'t, L: Law> Raised<'t, L> {
 
     /// Has the motor turn at the speed of a side.
     fn go(&self, guard: &mut ExperimentGuard<'_, L>) -> Result<(), Cause> {
-        if let Some(about) = self.about.filter(|_| self.is_direct) {
+        if let Some(about) = self.about.filter(|_| self.part == Part::DerivativeByPositions) {
             return guard.position(about + self.side * self.far, self.task.qpps as u32);
         }
         guard.speed(if self.side > 0.0 { self.speeds.1 } else { self.speeds.0 })
@@ -254,29 +285,32 @@ pub(crate) fn headroom<L: Law>(
     let lag_s = task.lag.total_s(law.tick_s()) + 2.0 * law.tick_s();
     let tried_s = (LAGS * lag_s).clamp(TRIED_S.0, TRIED_S.1).max(LEAST_POLLS * guard.options.poll_s / HEARD);
     let mut raised = Raised::new(guard, task, gains, (excitation, tried_s), &plant)?;
+    let tried_s = raised.tried_s;
     let wanted = raised.wanted(&plant);
     raised.write(guard, 1.0)?;
     raised.go(guard)?;
     // To and fro half a stroke first, so that the others go to and fro about the middle.
     let settle_s = (1.5 * task.plant.tau_s).clamp(0.15, 1.0);
     guard.poll_for(if raised.about.is_some() { 0.5 * tried_s } else { settle_s }, true)?;
+    // At speeds of whole counts in a tick rounding makes no noise: more of it than is predicted was an oscillation already.
+    let louder = if goes_by_whole_counts(law) { 1.0 } else { task.noise_factor.max(1.0) };
     let predicted = |raised: &Raised<'_, L>, factor: f64| {
-        task.noise_factor.max(1.0) * plant.margins(&raised.gains(factor), task.qpps).noise_duty
+        louder * plant.margins(&raised.gains(factor), task.qpps).noise_duty
     };
     let bound =
         |raised: &Raised<'_, L>, factor: f64| (TOO_ROUGH * predicted(raised, factor)).max(LEAST_ROUGH);
     let mut is_doubtful = false;
     let mut heard_above: Option<f64> = None;
     let mut quiet = 0.0;
-    for factor in std::iter::once(1.0).chain(FACTORS.map(|factor| factor.min(wanted))) {
+    for factor in std::iter::once(1.0).chain(raised.factors().iter().map(|factor| factor.min(wanted))) {
         if factor <= quiet {
             break;
         }
         if factor > 1.0 {
             if predicted(&raised, factor) > LOUDEST {
                 // The rounding of a coarse encoder alone makes such a noise.
+                is_doubtful = quiet < wanted_factor(task.goal.ms);
                 quiet = wanted;
-                is_doubtful = true;
                 break;
             }
             raised.write(guard, factor)?;
@@ -296,7 +330,7 @@ pub(crate) fn headroom<L: Law>(
             heard_above.get_or_insert(quiet.max(1.0));
         }
         if rough > bound_again {
-            let full = if raised.is_direct { DERIVATIVE_FACTOR } else { full_factor(task.goal.ms) };
+            let full = if raised.part == Part::Whole { full_factor(task.goal.ms) } else { DERIVATIVE_FACTOR };
             let wanted = full.min(raised.highest_calm(&plant));
             if quiet == 0.0 {
                 match lowered_until_quiet(guard, &mut raised, bound, rough)? {
@@ -309,7 +343,7 @@ pub(crate) fn headroom<L: Law>(
         }
         quiet = factor;
     }
-    if raised.is_direct && heard_above.is_none() && !is_doubtful {
+    if raised.part != Part::Whole && heard_above.is_none() && !is_doubtful {
         quiet = quiet_for_longer(guard, &mut raised, bound, quiet)?;
     }
     guard.duty(0.0)?;
@@ -331,7 +365,7 @@ fn quiet_for_longer<L: Law>(
     if is_quiet(raised, highest, measured) {
         return Ok(highest);
     }
-    for factor in FACTORS.into_iter().rev().filter(|factor| *factor < highest) {
+    for &factor in raised.factors().iter().rev().filter(|factor| **factor < highest) {
         raised.write(guard, factor)?;
         // The first stay lets what went on before die out.
         raised.activity(guard, false)?;
@@ -358,7 +392,7 @@ fn ringing<L: Law>(raised: &Raised<'_, L>, factor: f64) -> f64 {
     twin.start_steady(raised.speeds.0);
     let tick_s = task.law.tick_s();
     let ticks = (raised.tried_s / tick_s) as usize;
-    let to = if raised.is_direct {
+    let to = if raised.part == Part::DerivativeByPositions {
         Setpoint::Position(raised.far, task.qpps)
     } else {
         Setpoint::Speed(raised.speeds.1)
@@ -388,6 +422,25 @@ fn lowered_until_quiet<L: Law>(
     }
     let falls_with_gains = heard >= NOISE_SHARE * lowest * rough;
     Ok((!falls_with_gains).then_some(lowest))
+}
+
+/// The speed of a loop that starts from rest each time, counts/s: it has to be there, or to have turned about, when it is listened to. A slow motor is given more time
+/// rather than less speed, at which a motor that opened would hardly be missed.
+fn fastest_from_rest<L: Law>(tried_s: f64, task: &Task<L>) -> f64 {
+    let reached = 0.5 * accelerating(task) * (1.0 - HEARD) * tried_s / task.plant.tau_s;
+    reached.clamp(LEAST_FROM_REST * task.qpps, SPEED * task.qpps)
+}
+
+/// How long the motor takes to turn about at a speed, s.
+fn turning_s<L: Law>(speed: f64, task: &Task<L>) -> f64 {
+    2.0 * speed * task.plant.tau_s / accelerating(task)
+}
+
+/// The speed that the motor would gain in a time constant with what the current limit and friction leave of the duty, counts/s.
+fn accelerating<L: Law>(task: &Task<L>) -> f64 {
+    let plant = &task.plant;
+    let limit = plant.drive_limit.map_or(1.0, |limit| limit.min(1.0));
+    (limit - plant.coulomb_duty - plant.load_duty.abs()).max(LEAST_ACCELERATING) * plant.gain_counts_per_s
 }
 
 /// A speed near this one at which each tick counts a half more than a whole number: the difference of two ticks is never the same, and

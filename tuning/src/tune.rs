@@ -523,7 +523,7 @@ fn with_lag<L: Law>(task: Task<L>, found: &LagFit) -> Task<L> {
     let facts = task.law.facts();
     // The winding is measured with the rest. A springy shaft is found by raising the gains on the machine; where they cannot be raised, there has to be
     // room for it.
-    let unmodelled_ticks = if facts.writes_at_rest { facts.unmodelled_ticks } else { 0.0 };
+    let unmodelled_ticks = if facts.has_duty { 0.0 } else { facts.unmodelled_ticks };
     let worst_lag = Lag { delay_ticks: found.worst.delay_ticks + unmodelled_ticks, ..found.worst };
     // A record that says little leaves what such a controller may have.
     let longest = facts.longest_lag;

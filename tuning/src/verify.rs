@@ -181,7 +181,7 @@ pub fn check_moves<L: Law>(
             || report.lag.is_some_and(|lag| lag.chi_square > NO_MODEL)
     };
     // Where gains can be raised and were not, since a travel had no room for it or a load moves the axis, nothing has shown their margin.
-    let is_unheard = found.is_none() && request.excitation != Excitation::Free && !guard.facts.writes_at_rest;
+    let is_unheard = found.is_none() && request.excitation != Excitation::Free && guard.facts.has_duty;
     if is_unheard || report.design.is_some_and(is_short) {
         report.causes.push(Cause::MarginUnsure);
     }
@@ -276,8 +276,8 @@ fn leave_room<L: Law>(
     task: &Task<L>,
     report: &mut Report<L>,
 ) -> Result<Option<(f64, bool)>, Cause> {
-    // Registers that are written at rest only cannot be raised, and a loop without a gain of the speed is no velocity loop.
-    let can_be_raised = !guard.facts.writes_at_rest && stays_put(task, request.excitation);
+    // Without a duty that is read back nothing is heard, and a loop without a gain of the speed is no velocity loop.
+    let can_be_raised = guard.facts.has_duty && stays_put(task, request.excitation);
     let damped =
         |gains: &Gains| gains.velocity.p > 0.0 || gains.position.is_some_and(|position| position.d > 0.0);
     let Some(design) = report.design.filter(|design| can_be_raised && damped(&design.gains)) else {

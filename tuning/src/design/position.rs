@@ -291,7 +291,7 @@ pub(crate) fn deadzone<L: Law>(task: &Task<L>) -> f64 {
 /// shaft, which a difference of one tick reaches where a filtered speed does not. Where gains are raised on the machine, that finds most of it.
 fn direct<L: Law>(task: &Task<L>) -> Task<L> {
     let facts = task.law.facts();
-    let share = if facts.writes_at_rest { 1.0 } else { RAISED_SHARE };
+    let share = if facts.has_duty { RAISED_SHARE } else { 1.0 };
     let delay_ticks = task.worst_lag.delay_ticks + share * facts.unmodelled_ticks;
     Task { worst_lag: Lag { delay_ticks, ..task.worst_lag }, ..*task }
 }

@@ -7,14 +7,17 @@ use brushwork_motion_mind_sim::Mode;
 use brushwork_plant::world::WorldAction;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::experiment_guard::GuardOptions;
+use brushwork_tuning::law::Law;
+use brushwork_tuning::model::Gains;
 use brushwork_tuning::report::Verdict;
 use brushwork_tuning::tune::{Method, tune};
 use brushwork_tuning_bench::line::Event;
 use brushwork_tuning_bench::motion_mind::line::MindLine;
 use brushwork_tuning_bench::motion_mind::population::{MindSetup, specimen};
-use brushwork_tuning_bench::run::{request_of, tune_plant};
+use brushwork_tuning_bench::optimum::Optimum;
+use brushwork_tuning_bench::run::{judge_report, request_of, tune_plant};
 use brushwork_tuning_bench::table::{Row, cases, table};
-use brushwork_tuning_bench::unit::{self, Unit};
+use brushwork_tuning_bench::unit::{self, UnderTest, Unit};
 use brushwork_values::Motor;
 use std::time::Duration;
 
@@ -27,9 +30,9 @@ type Range = (f64, f64);
 
 /// Method, accepted %, good %, median cost. Gains are designed for the longest lag that is still likely, which costs some speed.
 const BOUNDS: [(&str, Range, Range, Range); 3] = [
-    ("velocity", (87.0, 100.0), (50.0, 90.0), (0.9, 1.45)),
-    ("pd", (93.0, 100.0), (43.0, 90.0), (1.0, 1.70)),
-    ("pid", (93.0, 100.0), (43.0, 85.0), (0.9, 1.60)),
+    ("velocity", (93.0, 100.0), (68.0, 95.0), (0.9, 1.3)),
+    ("pd", (93.0, 100.0), (62.0, 95.0), (1.0, 1.45)),
+    ("pid", (93.0, 100.0), (50.0, 90.0), (0.9, 1.45)),
 ];
 
 fn ours(rows: &[Row]) -> &Row {
@@ -53,6 +56,49 @@ fn sixteen_plants_come_out_as_they_did() {
     assert!(found.gain_error_p95 <= 2.5, "gain: {} %", found.gain_error_p95);
     assert!(found.tau_error_p95 <= 6.0, "tau: {} %", found.tau_error_p95);
     assert!(found.window_reach_p95 <= 100.0, "the window is never left: {} %", found.window_reach_p95);
+}
+
+/// At whole counts in a tick, which are all that can be commanded, plateaus tell nothing of the rounding of counts: taken for noise, they made lags of 3 to 14 ms of
+/// rigid motors with coarse encoders.
+#[test]
+fn the_lag_of_a_coarse_encoder_is_not_what_rounding_does_to_the_duty() {
+    for number in [12, 33, 60, 73, 137, 145, 169, 170] {
+        let plant = specimen(7, number);
+        let truth = MindSetup::truth(&plant);
+        let (report, _) = tune_plant(&plant, &request_of(&plant, Method::Velocity));
+        let found = report.lag.expect("a lag");
+        let (shortest, longest) = found.interval_s;
+        let (lag_s, true_s) = (found.lag.total_s(truth.law.tick_s()), truth.whole_lag_s());
+        println!(
+            "{number}: {:.2} ms, {:.2} true, chi-square {:.2}",
+            1e3 * lag_s,
+            1e3 * true_s,
+            found.chi_square
+        );
+        assert!((lag_s - true_s).abs() < 0.003, "plant {number}: {lag_s} s, {true_s} s true");
+        assert!(shortest <= true_s && true_s <= longest, "plant {number}: {true_s} s is not in {found:?}");
+        assert!(!found.is_unexplained(), "plant {number}: {found:?}");
+    }
+}
+
+/// These two were called tuned at a true Ms of 2.05 and 2.98 while no gain was raised on this family, since its registers are written at rest only.
+#[test]
+fn springy_shafts_are_never_called_tuned_beyond_the_margin() {
+    for (seed, number, method) in [
+        (7, 199, Method::Velocity),
+        (11, 191, Method::Velocity),
+        (11, 159, Method::Velocity),
+        (11, 191, Method::Pd),
+    ] {
+        let under_test = UnderTest::new(specimen(seed, number));
+        let (report, _) = tune_plant(&under_test.specimen, &request_of(&under_test.specimen, method));
+        let nothing = Optimum { cost: 1.0, duty_rms: 0.08, gains: Gains::default() };
+        let judged = judge_report(&under_test, &nothing, &report);
+        println!("{seed}, {number}: {:?} {:?}, true Ms {:.2}", report.verdict, report.causes, judged.ms);
+        let is_promised = report.verdict == Verdict::Tuned;
+        assert!(!is_promised || judged.ms <= 1.8, "plant {number} is called tuned at {:.2}", judged.ms);
+        assert!(report.measured.is_some_and(|measured| measured.headroom.is_some()), "gains were raised");
+    }
 }
 
 #[test]

@@ -55,7 +55,7 @@ static FACTS: Facts = Facts {
     filters_s: &[0.0],
     delays_ticks: &[0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0],
     rates_hz: &[],
-    unmodelled_ticks: 0.33,
+    unmodelled_ticks: 0.1,
     integral_times: (30.0, 0.65),
 };
 
@@ -157,6 +157,12 @@ impl Law for MotionMindLaw {
     fn take(registers: &mut MotionMindProposal, write: &MotionMindWrite) {
         let (MotionMindWrite::Loop(written) | MotionMindWrite::End(written)) = write;
         registers.motion_mind = Some(*written);
+    }
+
+    fn step_duty(&self, write: &MotionMindWrite) -> Option<f64> {
+        let (MotionMindWrite::Loop(written) | MotionMindWrite::End(written)) = write;
+        let gain = f64::from(written.pterm) + f64::from(written.dterm);
+        Some((gain / 2.0_f64.powi(i32::from(written.pidscalar)) / FULL_PWM).min(1.0))
     }
 
     fn note(write: MotionMindWrite, answer: Result<(), AxisError>) -> MotionMindNote {
