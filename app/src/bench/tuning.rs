@@ -9,7 +9,7 @@ use brushwork_cli::Exit;
 use brushwork_cli::new_file::NewFile;
 use brushwork_cli::output::{Output, OutputError, say};
 
-const HEADS: [&str; 11] = [
+const HEADS: [&str; 13] = [
     "task",
     "method",
     "accept %",
@@ -20,6 +20,8 @@ const HEADS: [&str; 11] = [
     "Ms p95",
     "Ms inertia p95",
     "overshoot p95 %",
+    "no warning %",
+    "Ms > 1.8, no warning %",
     "s",
 ];
 const FAULT_HEADS: [&str; 8] =
@@ -135,17 +137,21 @@ fn print_ways(rows: &[WayRow], out: &mut Output) -> Result<(), OutputError> {
 
 fn cells(task: &str, row: &Row) -> Vec<String> {
     let figures = [
-        row.accept,
-        row.good,
-        row.j_median,
-        row.j_p95,
-        row.unstable,
-        row.ms_p95,
-        row.ms_varied_p95,
-        row.overshoot_p95,
-        row.seconds_median,
+        Some(row.accept),
+        Some(row.good),
+        Some(row.j_median),
+        Some(row.j_p95),
+        Some(row.unstable),
+        Some(row.ms_p95),
+        Some(row.ms_varied_p95),
+        Some(row.overshoot_p95),
+        row.unwarned,
+        row.overpromised,
+        Some(row.seconds_median),
     ];
     let mut cells = vec![task.to_owned(), row.method.clone()];
-    cells.extend(figures.iter().map(ToString::to_string));
+    cells.extend(
+        figures.iter().map(|figure| figure.map_or_else(|| "-".to_owned(), |known| known.to_string())),
+    );
     cells
 }

@@ -1,5 +1,6 @@
 //! The table of the benchmark: our methods and every textbook rule, side by side on the same records.
 
+use crate::bounds::PROMISED_MS;
 use crate::faults::{FaultRow, fault_rows};
 use crate::optimum::{Optima as _, OptimaByPlant};
 use crate::oracle::{optima, position_optima};
@@ -9,7 +10,7 @@ use crate::run::{Judgement, judge, judge_report, linear, request_of, tune_plant}
 use crate::truth::Truth;
 use crate::unit::{Registers, Report, Request, UnderTest, Unit, population};
 use brushwork_tuning::law::Law;
-use brushwork_tuning::report;
+use brushwork_tuning::report::{self, Verdict};
 use brushwork_tuning::rules::{pd_rules, pid_rules, piv_rules, velocity_rules};
 use brushwork_tuning::tune::{Excitation, Method};
 use rayon::prelude::*;
@@ -48,6 +49,10 @@ pub struct Row {
     pub ms_varied_p95: f64,
     /// True overshoot, 95th percentile, %.
     pub overshoot_p95: f64,
+    /// Gains without a warning, %; `None` of a rule, which never warns.
+    pub unwarned: Option<f64>,
+    /// Gains without a warning that are unstable on the true plant or have a maximum sensitivity above 1.8, %.
+    pub overpromised: Option<f64>,
     /// Length of the run, s.
     pub seconds_median: f64,
     /// What was not accepted, by what was measured and on what machine, and how many of each.
@@ -218,7 +223,8 @@ fn rows<U: Unit>(method: Method, cases: &[Case<U>], reports: &[(Report<U>, f64)]
         .filter_map(|(case, (report, _))| {
             let optimum = case.optima.of(method)?;
             let judged = judge_report(&case.under_test, &optimum, report);
-            Some(Judged::new(method, &case.under_test, judged, report.seconds.1))
+            let is_unwarned = Some(report.verdict == Verdict::Tuned);
+            Some(Judged { is_unwarned, ..Judged::new(method, &case.under_test, judged, report.seconds.1) })
         })
         .collect();
     let mut rows = vec![row("brushwork", ours.iter())];
@@ -269,12 +275,14 @@ struct Judged {
     result: Judgement,
     seconds: f64,
     reject: Option<String>,
+    /// Whether a run gave its gains without a warning.
+    is_unwarned: Option<bool>,
 }
 
 impl Judged {
     fn new<U: Unit>(method: Method, under_test: &UnderTest<U>, result: Judgement, seconds: f64) -> Self {
         let reject = group(method, &under_test.specimen, &under_test.truth, &result);
-        Self { result, seconds, reject }
+        Self { result, seconds, reject, is_unwarned: None }
     }
 }
 
@@ -282,6 +290,11 @@ fn row<'a>(method: &str, judged: impl Iterator<Item = &'a Judged>) -> Row {
     let all: Vec<&Judged> = judged.collect();
     let percent = |of: fn(&Judgement) -> bool| {
         100.0 * all.iter().filter(|j| of(&j.result)).count() as f64 / all.len().max(1) as f64
+    };
+    let of_runs = |is_counted: fn(&Judged) -> bool| {
+        let has_runs = all.iter().any(|j| j.is_unwarned.is_some());
+        let counted = || all.iter().filter(|j| j.is_unwarned == Some(true) && is_counted(j)).count();
+        has_runs.then(|| round(100.0 * counted() as f64 / all.len() as f64, 1))
     };
     let given = || all.iter().map(|j| &j.result).filter(|j| j.refused.is_none());
     let j: Vec<f64> = all.iter().map(|j| j.result.j.min(REFUSED_COST)).collect();
@@ -299,6 +312,8 @@ fn row<'a>(method: &str, judged: impl Iterator<Item = &'a Judged>) -> Row {
         ms_p95: round(quantile(given().map(|j| j.ms), 0.95), 3),
         ms_varied_p95: round(quantile(given().map(|j| j.ms_varied.min(REFUSED_COST)), 0.95), 3),
         overshoot_p95: round(100.0 * quantile(given().map(|j| j.overshoot), 0.95), 1),
+        unwarned: of_runs(|_| true),
+        overpromised: of_runs(|j| !j.result.stable || j.result.ms > PROMISED_MS),
         seconds_median: round(quantile(all.iter().map(|j| j.seconds), 0.5), 2),
         rejects,
     }

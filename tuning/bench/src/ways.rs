@@ -1,5 +1,6 @@
 //! Every way to tune an axis, turning freely and in a travel: how often gains are found, and whether what is said of them is true. It needs no optima.
 
+use crate::bounds::{MOST_MS, PROMISED_MS};
 use crate::optimum::Optimum;
 use crate::population::Specimen;
 use crate::quantile::quantile;
@@ -13,9 +14,6 @@ use serde::Serialize;
 
 /// The travel, s of full speed.
 const TRAVEL_S: f64 = 0.5;
-/// The highest true sensitivity that gains without a warning may have, and that any may have.
-const PROMISED_MS: f64 = 1.8;
-const MOST_MS: f64 = 2.0;
 
 /// One way on all plants.
 #[derive(Clone, Debug, Serialize)]
