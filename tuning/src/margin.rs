@@ -292,7 +292,7 @@ pub(crate) fn headroom<L: Law>(
     // To and fro half a stroke first, so that the others go to and fro about the middle.
     let settle_s = (1.5 * task.plant.tau_s).clamp(0.15, 1.0);
     guard.poll_for(if raised.about.is_some() { 0.5 * tried_s } else { settle_s }, true)?;
-    // At speeds of whole counts in a tick rounding makes no noise: more of it than is predicted was an oscillation already.
+    // At speeds of whole counts in a tick rounding makes no noise: more of it than is predicted may be an oscillation already, and is not allowed for.
     let louder = if goes_by_whole_counts(law) { 1.0 } else { task.noise_factor.max(1.0) };
     let predicted = |raised: &Raised<'_, L>, factor: f64| {
         louder * plant.margins(&raised.gains(factor), task.qpps).noise_duty

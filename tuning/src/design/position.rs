@@ -62,6 +62,7 @@ const CASCADE: Refinement = Refinement {
     first_step: 1.2,
     repeats: 1,
 };
+/// How often the step is made smaller.
 const ROUNDS: usize = 4;
 /// How often coarse gains go on by a step at the most, and how much softer they become where none keeps its bounds.
 const MOST_STEPS: usize = 24;
@@ -87,19 +88,20 @@ pub fn design_pid<L: Law>(task: &Task<L>) -> Option<Design> {
     // The integral takes phase: the PD below it is kept a little softer. Where friction and load are small none is needed.
     let inner = Task { goal: Goal { ms: 1.0 + 0.8 * (task.goal.ms - 1.0), ..task.goal }, ..*task };
     let plain = search_pd(&loops, task, base);
-    let softer = search_pd(&loops, &inner, base).map(|best| with_integral(&loops, task, best));
+    let softer = search_pd(&loops, &inner, base).and_then(|best| with_integral(&loops, task, best));
     let best = [plain, softer]
         .into_iter()
         .flatten()
         .map(|best| refine(&loops, task, best, &DIRECT))
-        .reduce(cheaper)?;
+        .fold(None, better)?;
     let best = stepped(&loops, task, best, true)?;
     finish(&loops, task, Some(best).filter(|best| loops.stable(task, &best.gains)))
 }
 
 /// A PD with the integral that suits it best, or as it is.
-fn with_integral<L: Law>(loops: &Loops, task: &Task<L>, mut best: Candidate) -> Candidate {
-    let Some(proportional) = best.gains.position else { return best };
+fn with_integral<L: Law>(loops: &Loops, task: &Task<L>, plain: Candidate) -> Option<Candidate> {
+    let (base, proportional) = (plain.gains, plain.gains.position?);
+    let mut best = Some(plain);
     // A sum that has no fine bound has to grow slowly.
     let (longest, ratio) = task.law.facts().integral_times;
     for time_s in (0..12).map(|n| longest * task.plant.tau_s.max(0.03) * ratio.powi(n)) {
@@ -107,18 +109,14 @@ fn with_integral<L: Law>(loops: &Loops, task: &Task<L>, mut best: Candidate) -> 
             let p = proportional.p * share;
             let pid = Pid { p, i: p / time_s, d: proportional.d * share };
             for max_integral in sum_bounds(task, &pid) {
-                let gains = Gains { position: Some(pid), max_integral, ..best.gains };
+                let gains = Gains { position: Some(pid), max_integral, ..base };
                 if loops.within(task, &gains).is_some() && loops.stable(task, &gains) {
-                    best = cheaper(best, candidate(task, gains));
+                    best = better(best, candidate(task, gains));
                 }
             }
         }
     }
     best
-}
-
-fn cheaper(best: Candidate, other: Candidate) -> Candidate {
-    if other.cost < best.cost { other } else { best }
 }
 
 /// The bounds that the integral may be given: what friction and the load step eat, half as much again.

@@ -81,7 +81,7 @@ fn the_lag_of_a_coarse_encoder_is_not_what_rounding_does_to_the_duty() {
     }
 }
 
-/// These two were called tuned at a true Ms of 2.05 and 2.98 while no gain was raised on this family, since its registers are written at rest only.
+/// These were called tuned at a true Ms of 1.83 to 3.46 while no gain was raised on this family, since its registers are written at rest only.
 #[test]
 fn springy_shafts_are_never_called_tuned_beyond_the_margin() {
     for (seed, number, method) in [
