@@ -1,9 +1,11 @@
 """The simulated SuprMotr, driven by the Python package `basil_daq`, which knows a sister controller (PI C-863 "Mercury").
 
-Usage: mercury_check.py PORT. The boards on the line have the addresses 0 and 3, say only the letter in front of their reports, and have their echo off.
+Usage: mercury_check.py PORT. PORT is a path or a URL of pySerial. The boards on the line have the addresses 0 and 3, say only the letter in front of their
+reports, and have their echo off.
 """
 
 import sys
+import time
 import types
 
 
@@ -19,12 +21,44 @@ stand_in("git")
 stand_in("numpy")
 stand_in("bitarray", bitarray=object)
 
+import serial  # noqa: E402
+from basil.HL import mercury  # noqa: E402
 from basil.HL.mercury import Mercury  # noqa: E402
 from basil.TL.Serial import Serial  # noqa: E402
 
 import harness  # noqa: E402
 
 PORT = sys.argv[1]
+# For so long nothing comes from an address that no board has. Over TCP a board answers within a few milliseconds, however busy the computer is.
+SILENCE_S = 0.3
+# A shaft that has stood for so long of the board's time has come to its rest.
+REST_S = 0.15
+
+
+def machine():
+    """The time of the boards, and where their encoders are, past the wire."""
+    boards = harness.truth()
+    now = boards[0]["now"]
+    return now["secs"] + now["nanos"] / 1e9, [board["axes"][0]["encoder_counts"] for board in boards]
+
+
+def pause(seconds):
+    """The driver's pause between two looks at a position: as long as it wants to while a shaft turns, so that one which creeps is seen, and
+    no longer where all have come to their rest, since they would stand at the second look, too."""
+    end = time.monotonic() + seconds
+    stands_since, stands_at = machine()
+    while time.monotonic() < end:
+        now, at = machine()
+        if at != stands_at:
+            stands_since, stands_at = now, at
+        elif now >= stands_since + REST_S:
+            return
+        time.sleep(0.005)
+
+
+# Any port that pySerial knows, not only a file.
+serial.Serial = lambda port, **options: serial.serial_for_url(port, **options)
+mercury.time = types.SimpleNamespace(sleep=pause)
 # What friction leaves of a move at factory gains.
 NEAR = 30
 
@@ -39,7 +73,7 @@ def position(unit):
 
 
 # As the package's own example has it: the write termination is that of reading then, so that an end of text follows every line.
-line = Serial({"name": "line", "init": {"port": PORT, "baudrate": 9600, "timeout": 2, "read_termination": "\x03"}})
+line = Serial({"name": "line", "init": {"port": PORT, "baudrate": 9600, "timeout": SILENCE_S, "read_termination": "\x03"}})
 line.init()
 stage = Mercury(line, {"name": "stage", "init": {}})
 stage.init()

@@ -66,20 +66,26 @@ fn a_unit_that_is_alone_is_found_at_whatever_address_it_has_and_of_several_each_
         drop(program);
         ending
     };
-    let named = &["--family", "motion-mind"];
-    let ending = status("7", named);
+    let named = &["--family", "motion-mind"][..];
+    // Most of it is listening to addresses without a unit, so that they do it at once.
+    let asked = [("7", named), ("3,7", named), ("7", &[]), ("3,7", &["--address", "7"])];
+    let [alone, several, untold, addressed] = std::thread::scope(|scope| {
+        let asking = asked.map(|(addresses, options)| scope.spawn(move || status(addresses, options)));
+        asking.map(|asking| asking.join().expect("it has not failed"))
+    });
+    let ending = alone;
     assert_eq!(ending.status.code(), Some(0), "{ending:?}");
     assert!(ending.stderr.iter().any(|line| line.contains("Motion Mind 3 answers at unit 7")), "{ending:?}");
-    let ending = status("3,7", named);
+    let ending = several;
     assert_eq!(ending.status.code(), Some(2), "{ending:?}");
     assert!(
         ending.stderr.iter().any(|line| line.contains("unit 3, unit 7") && line.contains("--address")),
         "{ending:?}"
     );
-    let ending = status("7", &[]);
+    let ending = untold;
     assert_eq!(ending.status.code(), Some(3), "{ending:?}");
     assert!(ending.stderr.iter().any(|line| line.contains("family=motion-mind")), "{ending:?}");
-    let ending = status("3,7", &["--address", "7"]);
+    let ending = addressed;
     assert_eq!((ending.status.code(), ending.stderr.len()), (Some(0), 0), "{ending:?}");
 }
 
@@ -136,7 +142,7 @@ fn the_command_line_drives_by_mode_reads_settings_and_talks_to_simulated_units_i
         }
         (ending.status.code(), ending.stdout.join("\n"), ending.stderr.join("\n"))
     };
-    for protocol in ["binary", "ascii"] {
+    let by_protocol = |protocol: &str| {
         let target = format!("sim:motion-mind-3,mode=3,protocol={protocol},address=7");
         let (code, out, said) = run(&["drive", "--connect", &target, "--duty", "50", "--for", "1"]);
         assert!(code == Some(0) && out.contains("50.0 %"), "{protocol}: {out} {said}");
@@ -149,7 +155,13 @@ fn the_command_line_drives_by_mode_reads_settings_and_talks_to_simulated_units_i
         assert!(code == Some(0) && out.contains("unit 7") && out.contains("TEMPFAULT"), "{out} {said}");
         let (code, out, said) = run(&["stop", "--connect", &target]);
         assert!(code == Some(0) && out.contains("unit 7: motor stopped"), "{out} {said}");
-    }
+    };
+    // Each command looks for the unit first, which is waiting: both at once.
+    std::thread::scope(|scope| {
+        for protocol in ["binary", "ascii"] {
+            scope.spawn(move || by_protocol(protocol));
+        }
+    });
     let text = "sim:motion-mind-3,protocol=ascii";
     let (code, out, said) = run(&["terminal", "--connect", text, "R01 04", "Z01"]);
     assert!(code == Some(4) && out.contains("PTRM=6000") && said.contains("Z is never sent"), "{out} {said}");
