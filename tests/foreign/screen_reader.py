@@ -21,6 +21,8 @@ ACTION = "org.a11y.atspi.Action"
 PROPERTIES = "org.freedesktop.DBus.Properties"
 ROOT = "/org/a11y/atspi/accessible/root"
 PATIENCE_S = float(os.environ.get("BRUSHWORK_PATIENCE_S", "90"))
+# How often a run is begun that this computer may be too late for.
+RUNS = 10
 # Numbers of states in the AT-SPI protocol (atspi-constants.h).
 SENSITIVE = 24
 # Numbers of roles there: what can be used, each of which has to have a name.
@@ -135,11 +137,29 @@ class Reader:
     def sees(self, part):
         return self.until(f"words {part!r}", lambda: any(part in name for _, _, name in self.tree()))
 
-    def hears(self, part):
-        return self.until(f"announcement {part!r}", lambda: any(part in text for text in self.heard[self.since :]))
+    def hears(self, *parts):
+        """The first announcement with one of these."""
+
+        def heard():
+            return next((text for text in self.heard[self.since :] if any(part in text for part in parts)), None)
+
+        return self.until(f"announcement {' or '.join(parts)!r}", heard)
 
     def nameless(self):
         return [USABLE[role] for _, role, name in self.tree() if role in USABLE and not name.strip()]
+
+
+def tune(reader):
+    """Tunes M1. A run that a busy computer was too late for is begun again; what else ends one is a failure."""
+    late = "M1 was not tuned: this computer answered late"
+    for _ in range(RUNS):
+        reader.press("Arm")
+        reader.hears("Armed for the velocity screen")
+        reader.press("Tune M1")
+        # Nothing is asked of the window until it has told the end by itself: walking its objects takes it time that the run needs.
+        if late not in reader.hears("M1 is tuned", "M1 was not tuned"):
+            return
+    raise Failed(f"this computer was too late for each of {RUNS} runs")
 
 
 def path(reader):
@@ -163,9 +183,7 @@ def path(reader):
     yield "the direction seen, and stopped"
     reader.press("Device Status")
     reader.press("Go to Velocity Settings: Tune")
-    reader.press("Arm")
-    reader.hears("Armed for the velocity screen")
-    reader.press("Tune M1")
+    tune(reader)
     reader.press("Apply (RAM)")
     reader.press("Device Status")
     reader.sees("Step Velocity loop: done")

@@ -49,11 +49,11 @@ impl Ending {
         self.stderr.iter().any(|line| line.contains("did not renew the motion within"))
     }
 
-    /// Whether a controller was silent that a test simulates beside the program: on a crowded machine its thread has no processor to answer
-    /// with, for longer than a line that was quick until then is waited for.
+    /// Whether a controller was silent that a test simulates beside the program, or so late that a motion had waited behind an answer for too
+    /// long: on a crowded machine what carries its answers has no processor, for longer than a line that was quick until then is waited for.
     #[must_use]
     pub fn found_silence(&self) -> bool {
-        let said = ["no answer within", "no answer came in time"];
+        let said = ["no answer within", "no answer came in time", "waited for longer than a motion may live"];
         self.stderr.iter().any(|line| said.iter().any(|said| line.contains(said)))
     }
 }

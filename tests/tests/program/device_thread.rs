@@ -11,7 +11,7 @@ use brushwork_link::device::{
     Addresses, ArmScope, DeviceHandle, DeviceOptions, DeviceThread, DisarmReason, Drive, DriveCommand, Event,
     PollRate, Request,
 };
-use brushwork_link::transport::SerialTransport;
+use brushwork_link::transport::ConnectTarget;
 use brushwork_link::{Stream, SystemClock};
 use brushwork_mcp_sim::controller::Controller;
 use brushwork_mcp_wire::packet_serial::Generation;
@@ -31,16 +31,16 @@ struct Window {
 impl Window {
     fn connect(controller: &OnPty, poll: PollRate) -> Self {
         brushwork::install();
-        let port = controller.port();
-        let transport =
-            SerialTransport::open(&port.to_string_lossy(), 115_200).expect("the terminal is there");
+        // On a busy machine it is late.
+        let target: ConnectTarget = controller.target().parse().expect("a target");
+        let transport = target.open().expect("the terminal is there");
         let options = DeviceOptions {
             addresses: Addresses::Only(0x80),
             stream: Some(Stream::Usb),
             poll,
             ..DeviceOptions::default()
         };
-        let handle = DeviceThread::spawn(Box::new(transport), SystemClock::shared(), options)
+        let handle = DeviceThread::spawn(transport, SystemClock::shared(), options)
             .expect("the system gives a thread");
         let window = Self { handle };
         window.wait_for("a selected unit", |event| matches!(event, Event::Selected { .. }));

@@ -39,24 +39,27 @@ fn assert_was_told(holder: Program) {
     assert_says_who_stopped(&holder.finish(LIMIT));
 }
 
+/// Whether this machine was too crowded for a program or for its controller.
+fn was_late(ending: &Ending) -> bool {
+    ending.was_starved() || ending.found_silence()
+}
+
 fn assert_says_who_stopped(ending: &Ending) {
     assert_eq!(ending.status.code(), Some(REFUSED), "{ending:?}");
     assert_eq!(ending.stderr.iter().filter(|line| *line == STOPPED).count(), 1, "{ending:?}");
 }
 
 /// Whoever stopped says what stands now, and by whom.
-fn assert_tells(ending: &Ending, unit: &str, holder: &Program, command: &str) {
+fn assert_tells(ending: &Ending, unit: &str, holder: u32, command: &str) {
     assert_eq!(ending.status.code(), Some(DONE), "{ending:?}");
     assert!(ending.stdout[0].starts_with(unit), "{ending:?}");
-    let by = format!(
-        "The line is held by brushwork {command} (process {}), which was asked to stop it.",
-        holder.id()
-    );
-    assert_eq!(ending.stderr[0], by);
+    let by =
+        format!("The line is held by brushwork {command} (process {holder}), which was asked to stop it.");
+    assert_eq!(ending.stderr.first(), Some(&by), "{ending:?}");
 }
 
 /// A drive on a new controller is stopped from outside at `place_of` where it is served. Once more, and no oftener, where its controller
-/// was not heard in time, as on a crowded machine, where a pseudo-terminal is late.
+/// was not heard in time, as on a crowded machine, where a pseudo-terminal is late; or the drive had ended before for such a reason.
 fn assert_drive_is_stopped<M: Machine + 'static>(
     serve: impl Fn() -> Served<M>,
     place_of: impl Fn(&str) -> String,
@@ -66,11 +69,13 @@ fn assert_drive_is_stopped<M: Machine + 'static>(
     for is_last in [false, true] {
         let served = serve();
         let drive = driving_on(&served);
+        let holder = drive.id();
         let ending = stop(&place_of(&served.target), more);
         assert_off(&served);
-        if is_last || !ending.found_silence() {
-            assert_tells(&ending, stopped, &drive, "drive");
-            return assert_was_told(drive);
+        let drive = drive.finish(LIMIT);
+        if is_last || !(ending.found_silence() || was_late(&drive)) {
+            assert_tells(&ending, stopped, holder, "drive");
+            return assert_says_who_stopped(&drive);
         }
     }
 }
@@ -126,7 +131,7 @@ fn units_that_the_other_program_has_not_looked_for_are_stopped_too() {
         (ending, drive.finish(LIMIT))
     };
     // A drive that has ended before, since this machine is too crowded for it or for the controller, has nothing to say.
-    let has_driven = |(_, drive): &(Ending, Ending)| !drive.was_starved() && !drive.found_silence();
+    let has_driven = |(_, drive): &(Ending, Ending)| !was_late(drive);
     let (ending, drive) = (0..TRIES).map(|_| stopped()).find(has_driven).expect("a machine with some room");
     assert_eq!(ending.status.code(), Some(DONE), "{ending:?}");
     let others =
@@ -154,7 +159,7 @@ fn a_tuning_run_is_stopped_from_outside_and_puts_back_what_it_changed() {
     });
     let tune = driving.expect("a run drives");
     let ending = stop(&target, &[]);
-    assert_tells(&ending, "0x80: both motors stopped", &tune, "tune");
+    assert_tells(&ending, "0x80: both motors stopped", tune.id(), "tune");
     let ending = tune.finish(LIMIT);
     assert_eq!(ending.status.code(), Some(REFUSED), "{ending:?}");
     assert!(ending.stderr.iter().any(|line| line == STOPPED), "{ending:?}");
@@ -206,19 +211,37 @@ fn a_program_that_was_halted_at_rest_is_told_as_that() {
 /// One that drives is ended by its guardian, and the line is stopped and asked by whoever wanted it stopped.
 #[test]
 fn a_program_that_was_halted_or_killed_while_it_drove_hands_the_line_over() {
+    // Whoever stops waits for units that are late, for seconds: both at once.
+    std::thread::scope(|scope| {
+        for signal in ["STOP", "KILL"] {
+            scope.spawn(move || hands_the_line_over_after(signal));
+        }
+    });
+}
+
+fn hands_the_line_over_after(signal: &str) {
     let served = Served::on_pty(motion_mind(), ",family=motion-mind");
-    for signal in ["STOP", "KILL"] {
-        let drive = driving_on(&served);
+    // On a crowded machine the terminal may be too late for whoever stops, who has had the line then all the same.
+    let is_heard = |ending: &Ending| {
+        let was_silent = |line: &String| line.starts_with("Could not find a controller on");
+        ending.status.code() != Some(NO_LINK) || !ending.stderr.iter().any(was_silent)
+    };
+    let is_stopped = |ending: &Ending| {
+        assert_eq!(ending.status.code(), Some(DONE), "{signal}: {ending:?}");
+        assert!(ending.stdout[0].starts_with("unit 1: motor stopped"), "{signal}: {ending:?}");
+        assert!(ending.stderr.iter().all(|line| !line.contains("held by")), "{signal}: {ending:?}");
+    };
+    let handed_over = || {
+        let mut drive = driving_on(&served);
         drive.signal(signal);
         let ending = stop(&served.target, &[]);
         assert_off(&served);
-        assert_eq!(ending.status.code(), Some(DONE), "{ending:?}");
-        assert!(ending.stdout[0].starts_with("unit 1: motor stopped"), "{ending:?}");
-        assert!(ending.stderr.iter().all(|line| !line.contains("held by")), "{ending:?}");
-        let mut drive = drive;
         wait::until("its end", || !drive.is_running(), || "it is there".to_owned());
-    }
-    // Nothing is left of either.
-    let again = stop(&served.target, &[]);
-    assert!(again.status.success() && again.stderr.iter().all(|line| !line.contains("held by")), "{again:?}");
+        ending
+    };
+    let heard = (0..TRIES).map(|_| handed_over()).find(is_heard);
+    is_stopped(&heard.expect("a machine with some room"));
+    // Nothing is left of it.
+    let again = (0..TRIES).map(|_| stop(&served.target, &[])).find(is_heard);
+    is_stopped(&again.expect("a machine with some room"));
 }
