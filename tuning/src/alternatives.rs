@@ -14,15 +14,22 @@ use crate::proposal::design_for;
 use crate::report::Report;
 use crate::request::{Identification, Method};
 use crate::rules::Classic;
+use crate::thresholds::thresholds;
 use crate::ticks::{position_test_and_end, velocity_test};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// The highest maximum sensitivity with which a rule is tried on a machine; beyond it its gain is lowered.
-const MOST_MS: f64 = 1.8;
-/// By how much at a time, and how often at the most: to a hundredth.
-const LOWERED: f64 = 0.85;
-const MOST_LOWERED: usize = 28;
+thresholds! {
+    /// How far the gains of a rule are lowered until they may be tried.
+    ALTERNATIVES: Thresholds {
+        /// Highest maximum sensitivity (Ms) with which a rule is tried on a machine; beyond it its gains are lowered.
+        most_ms: f64 = 1.8,
+        /// Factor by which all gains are lowered at a time.
+        lowered: f64 = 0.85,
+        /// How often they are lowered at the most: to a hundredth.
+        most_lowered: usize = 28,
+    }
+}
 
 /// Where gains come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -219,16 +226,21 @@ pub fn alternatives<L: Law>(report: &Report<L>) -> Vec<Alternative<L>> {
 pub(crate) fn proposed<L: Law>(report: &Report<L>, task: &Task<L>) -> Option<(Design, bool)> {
     let rule = Rule::of(report.request.identification, report.request.method);
     let mut gains = gains_of(rule, report, task, &seen(report, task))?;
-    for lowered in 0..MOST_LOWERED {
+    for lowered in 0..ALTERNATIVES.most_lowered {
         let design = promised(task, gains);
-        let is_fit = design.ms <= MOST_MS && design.noise_duty <= task.goal.noise_duty;
+        let is_fit = design.ms <= ALTERNATIVES.most_ms && design.noise_duty <= task.goal.noise_duty;
         if is_fit && is_stable(task, &gains) {
             return Some((design, lowered > 0));
         }
-        let softer = |pid: Pid| Pid { p: LOWERED * pid.p, i: LOWERED * pid.i, d: LOWERED * pid.d };
+        let softer = |pid: Pid| Pid {
+            p: ALTERNATIVES.lowered * pid.p,
+            i: ALTERNATIVES.lowered * pid.i,
+            d: ALTERNATIVES.lowered * pid.d,
+        };
         let position = gains.position.map(softer);
         // A bound of the sum is one of what the integral gives.
-        let max_integral = if position.is_some() { gains.max_integral / LOWERED } else { gains.max_integral };
+        let max_integral =
+            if position.is_some() { gains.max_integral / ALTERNATIVES.lowered } else { gains.max_integral };
         gains = Gains { velocity: softer(gains.velocity), position, max_integral, ..gains };
     }
     None

@@ -6,58 +6,83 @@
 
 use crate::model::PlantModel;
 use crate::poll::Point;
+use crate::thresholds::{Scaled, thresholds};
 use std::collections::VecDeque;
 
-/// Stretches that are looked at, s. The long ones are for heavy motors, which show a fault late.
-const STRETCHES_S: [f64; 7] = [0.045, 0.08, 0.12, 0.17, 0.23, 0.30, 0.45];
-/// Time over which the speed before a stretch is taken, s, and as a share of the stretch.
-const SPEED_S: f64 = 0.03;
-const SPEED_SHARE: f64 = 0.3;
-/// Longest step of the bounds, s, and steps in a stretch at the least.
-const STEP_S: f64 = 0.004;
-const STEPS: f64 = 40.0;
-/// How far the gain may be beside the model, and between which multiples of its time constant the true one lies: a load behind a
-/// spring or within its backlash leaves the motor alone, which is quicker.
-const GAIN_DOUBT: f64 = 0.12;
-const TAU_SPREAD: (f64, f64) = (0.3, 1.6);
-/// How far a constant load may be beside the model, as a share of it.
-const LOAD_DOUBT: f64 = 0.25;
-/// Bounds of the friction over the model's: share, and duty on top of the higher one.
-const FRICTION: (f64, f64) = (0.5, 1.5);
-const MORE_FRICTION: f64 = 0.02;
-/// The same for what holds a motor at rest.
-const STICTION: f64 = 2.2;
-const MORE_STICTION: f64 = 0.04;
-/// Bounds of the current limit over what was set.
-const LIMIT: (f64, f64) = (0.85, 1.2);
-/// Duty that readings may be beside the truth between two polls, and how many times their middle scatter is added to it.
-const DUTY_DOUBT: f64 = 0.02;
-const SCATTERS: f64 = 2.0;
-/// Steps of the duty by one count that readings may miss.
-const STEPS_UNSEEN: f64 = 0.5;
-/// The same with too few readings to tell a scatter.
-const UNKNOWN_DOUBT: f64 = 0.14;
-const FEW_READINGS: usize = 5;
-/// From the stamp of a setpoint to what it does, s: either side.
-const SETPOINT_ACTS_S: (f64, f64) = (0.006, 0.012);
-/// How long setpoints are remembered, s: longer than the polls.
-const MEMORY_S: f64 = 2.0;
-/// Counts that a stretch may be beside its bounds, time that the stamps of its ends and of the speed before it may be off, s, and shares
-/// of the speed before it and of the speed at full duty.
-const MARGIN: Margin = Margin { counts: 4.0, stamp_s: 0.0025, speed: 0.06, full: 0.012 };
-/// The same of counts that stand still: no roughness and no late stamp makes them stand.
-const STANDING_MARGIN: Margin = Margin { counts: 4.0, stamp_s: 0.0, speed: 0.1, full: 0.005 };
-/// Share of the friction that a load which helps makes up for at the least.
-const HELPING: f64 = 0.4;
-/// Counts between which an encoder that stands may flicker.
-const STANDING_COUNTS: f64 = 1.0;
+thresholds! {
+    /// What a motor under a speed or position loop may do before it counts as stuck, jammed or lost.
+    CLOSED_LOOP: Thresholds {
+        /// Lengths of the stretches that are looked at, in seconds. The long ones are for heavy motors, which show a fault late.
+        stretches_s: [f64; 7] = [0.045, 0.08, 0.12, 0.17, 0.23, 0.30, 0.45],
+        /// Shortest time over which the speed before a stretch is taken, in seconds.
+        speed_s: f64 = 0.03,
+        /// The same time as a share of the stretch, which counts where it is longer.
+        speed_share: f64 = 0.3,
+        /// Shortest step in which the bounds are computed along a stretch, in seconds.
+        step_s: f64 = 0.004,
+        /// Most such steps in a stretch: a long one has longer steps.
+        steps: f64 = 40.0,
+        /// How far the true gain may be from that of the model, as a share of it.
+        gain_doubt: f64 = 0.12,
+        /// Multiples of the model's time constant between which the true one lies: a load behind a spring or within its backlash leaves the motor alone, which is
+        /// quicker.
+        tau_spread: (f64, f64) = (0.3, 1.6),
+        /// How far a constant load may be from that of the model, as a share of it.
+        load_doubt: f64 = 0.25,
+        /// Lowest and highest friction, as multiples of that of the model.
+        friction: (f64, f64) = (0.5, 1.5),
+        /// Duty on top of the highest friction, as a share of full.
+        more_friction: f64 = 0.02,
+        /// Most that holds a motor at rest, as a multiple of the model's friction.
+        stiction: f64 = 2.2,
+        /// Duty on top of that, as a share of full.
+        more_stiction: f64 = 0.04,
+        /// Lowest and highest current limit, as multiples of what was set.
+        limit: (f64, f64) = (0.85, 1.2),
+        /// How far readings of the duty may be from the truth between two polls, as a share of full duty, before their scatter is added.
+        duty_doubt: f64 = 0.02,
+        /// How many times the median scatter of the readings is added to that.
+        scatters: f64 = 2.0,
+        /// Steps of the duty that readings may miss, each of them as high as one count in a tick makes it.
+        steps_unseen: f64 = 0.5,
+        /// How far readings of the duty may be from the truth, as a share of full duty, when they are too few to tell a scatter.
+        unknown_doubt: f64 = 0.14,
+        /// Fewest readings from which a scatter is told; each of them lies between two others.
+        few_readings: usize = 5,
+        /// How uncertain it is when a setpoint acts, in seconds: so long before it was first sent, and so long after it was acknowledged.
+        setpoint_acts_s: (f64, f64) = (0.006, 0.012),
+        /// How long setpoints are remembered, in seconds: longer than the polls.
+        memory_s: f64 = 2.0,
+        /// Least load that may keep a motor going, as a share of the friction.
+        helping: f64 = 0.4,
+        /// Counts by which an encoder that stands still may flicker.
+        standing_counts: f64 = 1.0,
+        /// How far a stretch may be outside its bounds: counts, seconds that the stamps of its ends and of the speed before it may be off, and shares of the speed before
+        /// it and of the speed at full duty.
+        margin: Margin = Margin { counts: 4.0, stamp_s: 0.0025, speed: 0.06, full: 0.012 },
+        /// The same where the counts stand still: no roughness and no late stamp makes them stand.
+        standing_margin: Margin = Margin { counts: 4.0, stamp_s: 0.0, speed: 0.1, full: 0.005 },
+    }
+}
 
 /// What a stretch may be beside its bounds.
-struct Margin {
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Margin {
     counts: f64,
     stamp_s: f64,
     speed: f64,
     full: f64,
+}
+
+impl Scaled for Margin {
+    fn scaled(self, by: f64) -> Self {
+        Self {
+            counts: self.counts * by,
+            stamp_s: self.stamp_s * by,
+            speed: self.speed * by,
+            full: self.full * by,
+        }
+    }
 }
 
 impl Margin {
@@ -123,11 +148,12 @@ impl ClosedLoopMonitor {
     pub(crate) fn command(&mut self, from_s: f64, to_s: f64, before: Before) {
         if before != Before::ClosedLoop {
             self.since_s = if let Before::Off(since_s) = before { since_s } else { to_s };
-            self.commanded_s = from_s - SETPOINT_ACTS_S.0;
+            self.commanded_s = from_s - CLOSED_LOOP.setpoint_acts_s.0;
             self.setpoints.clear();
         }
-        self.setpoints.push_back((from_s - SETPOINT_ACTS_S.0, to_s + SETPOINT_ACTS_S.1));
-        while self.setpoints.front().is_some_and(|old| to_s - old.1 > MEMORY_S) {
+        self.setpoints
+            .push_back((from_s - CLOSED_LOOP.setpoint_acts_s.0, to_s + CLOSED_LOOP.setpoint_acts_s.1));
+        while self.setpoints.front().is_some_and(|old| to_s - old.1 > CLOSED_LOOP.memory_s) {
             self.setpoints.pop_front();
         }
     }
@@ -146,18 +172,21 @@ impl ClosedLoopMonitor {
     /// The least that friction takes off the speed of an open motor in a time; `None` where a load pulls that could keep it going.
     pub(crate) fn least_fall(&self, seconds: f64) -> Option<f64> {
         let model = &self.model;
-        let is_helped = model.load_duty.abs() > HELPING * model.coulomb_duty;
-        let share = (seconds / (TAU_SPREAD.1 * model.tau_s)).min(1.0);
-        (!is_helped).then_some(FRICTION.0 * model.gain_counts_per_s * model.coulomb_duty * share)
+        let is_helped = model.load_duty.abs() > CLOSED_LOOP.helping * model.coulomb_duty;
+        let share = (seconds / (CLOSED_LOOP.tau_spread.1 * model.tau_s)).min(1.0);
+        (!is_helped).then_some(CLOSED_LOOP.friction.0 * model.gain_counts_per_s * model.coulomb_duty * share)
     }
 
     /// Whether the counts of every stretch lie within their bounds.
     pub(crate) fn agrees(&self, recent: &VecDeque<Point>, readings: &VecDeque<(f64, f64)>) -> bool {
         let doubt = self.doubt(readings);
-        STRETCHES_S.iter().filter_map(|seconds| self.stretch(recent, *seconds)).all(|stretch| {
+        CLOSED_LOOP.stretches_s.iter().filter_map(|seconds| self.stretch(recent, *seconds)).all(|stretch| {
             // A loop that sees nothing move does nothing jerky: its duty goes from one reading to the next.
-            let (doubt, calm_s) =
-                if stretch.stands { (DUTY_DOUBT, stretch.from.t) } else { (doubt, f64::INFINITY) };
+            let (doubt, calm_s) = if stretch.stands {
+                (CLOSED_LOOP.duty_doubt, stretch.from.t)
+            } else {
+                (doubt, f64::INFINITY)
+            };
             self.within(&stretch, &Duties { readings, monitor: self, doubt, calm_s })
         })
     }
@@ -169,10 +198,10 @@ impl ClosedLoopMonitor {
             let counts = recent.iter().skip(from).map(|point| point.counts);
             let (low, high) =
                 counts.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), c| (l.min(c), h.max(c)));
-            high - low <= STANDING_COUNTS
+            high - low <= CLOSED_LOOP.standing_counts
         };
         let from = recent[from];
-        let base_s = SPEED_S.max(SPEED_SHARE * seconds);
+        let base_s = CLOSED_LOOP.speed_s.max(CLOSED_LOOP.speed_share * seconds);
         let earlier = recent.iter().rev().find(|old| from.t - old.t >= base_s)?;
         let speed_before = (from.counts - earlier.counts) / (from.t - earlier.t);
         let before_s = 0.5 * (earlier.t + from.t);
@@ -183,7 +212,8 @@ impl ClosedLoopMonitor {
     fn within(&self, stretch: &Stretch, duties: &Duties<'_>) -> bool {
         let moved = stretch.to.counts - stretch.from.counts;
         let full = self.model.gain_counts_per_s;
-        let margin = if stretch.stands { STANDING_MARGIN } else { MARGIN }.of(stretch, full);
+        let margin =
+            if stretch.stands { CLOSED_LOOP.standing_margin } else { CLOSED_LOOP.margin }.of(stretch, full);
         let least = self.least_distance(stretch, duties, 1.0);
         let most = -self.least_distance(stretch, duties, -1.0);
         moved >= least - margin && moved <= most + margin
@@ -199,11 +229,13 @@ impl ClosedLoopMonitor {
             .filter(|(a, _, c)| is_quiet(a.0, c.0))
             .map(|(a, b, c)| (b.1 - 0.5 * (a.1 + c.1)).abs())
             .collect();
-        if beside.len() < FEW_READINGS {
-            return UNKNOWN_DOUBT;
+        if beside.len() < CLOSED_LOOP.few_readings {
+            return CLOSED_LOOP.unknown_doubt;
         }
         beside.sort_by(f64::total_cmp);
-        DUTY_DOUBT + STEPS_UNSEEN * self.step_duty + SCATTERS * beside[beside.len() / 2]
+        CLOSED_LOOP.duty_doubt
+            + CLOSED_LOOP.steps_unseen * self.step_duty
+            + CLOSED_LOOP.scatters * beside[beside.len() / 2]
     }
 
     /// The least distance that the motor can have gone in a direction; one backwards is negative.
@@ -211,7 +243,7 @@ impl ClosedLoopMonitor {
         let mut speed = stretch.speed_before * direction;
         let mut distance = 0.0;
         let mut t = stretch.before_s;
-        let longest = STEP_S.max((stretch.to.t - t) / STEPS);
+        let longest = CLOSED_LOOP.step_s.max((stretch.to.t - t) / CLOSED_LOOP.steps);
         while t < stretch.to.t - 1e-9 {
             let step = longest.min(stretch.to.t - t);
             let range = duties.range(t + 0.5 * step);
@@ -230,25 +262,31 @@ impl ClosedLoopMonitor {
     fn least_speed(&self, speed: f64, duty: f64, direction: f64, step: f64) -> f64 {
         let model = &self.model;
         let full = model.gain_counts_per_s;
-        let share = if duty > 0.0 { 1.0 - GAIN_DOUBT } else { 1.0 + GAIN_DOUBT };
-        let mut push =
-            share * duty - speed / full - model.load_duty * direction - LOAD_DOUBT * model.load_duty.abs();
+        let share = if duty > 0.0 { 1.0 - CLOSED_LOOP.gain_doubt } else { 1.0 + CLOSED_LOOP.gain_doubt };
+        let mut push = share * duty
+            - speed / full
+            - model.load_duty * direction
+            - CLOSED_LOOP.load_doubt * model.load_duty.abs();
         if let Some(limit) = model.drive_limit {
             let brake = model.brake_limit.unwrap_or(limit).max(limit);
-            push = push.clamp(-LIMIT.1 * brake, LIMIT.0 * limit);
+            push = push.clamp(-CLOSED_LOOP.limit.1 * brake, CLOSED_LOOP.limit.0 * limit);
         }
-        let friction = FRICTION.1 * model.coulomb_duty + MORE_FRICTION;
-        let stiction = self.start_duty.min(STICTION * model.coulomb_duty + MORE_STICTION).max(friction);
+        let friction = CLOSED_LOOP.friction.1 * model.coulomb_duty + CLOSED_LOOP.more_friction;
+        let stiction = self
+            .start_duty
+            .min(CLOSED_LOOP.stiction * model.coulomb_duty + CLOSED_LOOP.more_stiction)
+            .max(friction);
         let force = if speed > 0.0 {
             push - friction
         } else if speed < 0.0 {
-            push + FRICTION.0 * model.coulomb_duty
+            push + CLOSED_LOOP.friction.0 * model.coulomb_duty
         } else if push > 0.0 {
             (push - stiction).max(0.0)
         } else {
-            (push + FRICTION.0 * model.coulomb_duty).min(0.0)
+            (push + CLOSED_LOOP.friction.0 * model.coulomb_duty).min(0.0)
         };
-        let tau_s = model.tau_s * if force > 0.0 { TAU_SPREAD.1 } else { TAU_SPREAD.0 };
+        let tau_s =
+            model.tau_s * if force > 0.0 { CLOSED_LOOP.tau_spread.1 } else { CLOSED_LOOP.tau_spread.0 };
         let next = speed + full * force * (1.0 - (-step / tau_s).exp());
         // Friction stops a motor, but does not turn it.
         if speed > 0.0 && next < 0.0 && push >= -friction { 0.0 } else { next }

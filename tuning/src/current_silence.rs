@@ -1,26 +1,34 @@
 //! Whether a driven motor has ceased to draw a current: readings in a row that are no more than the noise of the sensor, of a motor whose current was
 //! clearly more before.
 
+use crate::thresholds::thresholds;
 use std::collections::VecDeque;
 
-/// Highest reading that counts as no current of a sensor without noise, A: the wire's resolution.
-pub(crate) const NO_CURRENT_AMPS: f64 = 0.0151;
-/// How many standard deviations of the readings at rest it is of one with noise: of twenty readings of no current one in a hundred runs has one beyond it.
-pub(crate) const NOISES: f64 = 3.5;
-/// Without current for this long, the motor is open, s.
-pub(crate) const OPEN_S: f64 = 0.2;
-/// How many times the highest reading of no current a motor has to draw, typically, for its silence to raise an alarm: at 1.2 a motor that its load helps is called
-/// open. And at some time, for its silence to give an alarm of any kind its name.
-const CLEARLY: f64 = 2.0;
-const CLEARLY_ONCE: f64 = 2.5;
-/// How many times the lowest duty at which a held motor drew a current another has to be for its silence to count: currents are read in steps.
-const HELD: f64 = 1.5;
-/// Share of a reading in the typical current: some ten readings, a third of a second, make it.
-const NEWEST: f64 = 0.1;
-/// The mean size of readings of no current over their root mean square is 0.8, with a deviation of 0.6 over the root of their number. Up to three of these, and the
-/// whole of the root mean square since that was measured too.
-const MEAN: f64 = 1.0;
-const THREE_DEVIATIONS: f64 = 1.8;
+thresholds! {
+    /// From which missing current on a motor counts as not connected.
+    pub(crate) SILENCE: Thresholds {
+        /// Highest reading that counts as no current of a sensor without noise, in amperes: the wire's resolution.
+        no_current_amps: f64 = 0.0151,
+        /// Highest reading that counts as no current of a sensor with noise, in standard deviations of the readings at rest: of twenty readings of no current one in a
+        /// hundred runs has one beyond it.
+        noises: f64 = 3.5,
+        /// How long a motor has to be without current to be open, in seconds.
+        open_s: f64 = 0.2,
+        /// How many times the highest reading of no current a motor has to draw, typically, for its silence to raise an alarm: at 1.2 a motor that its load helps is
+        /// called open.
+        clearly: f64 = 2.0,
+        /// How many times that reading a motor must have drawn at some time for its silence to give an alarm of any kind its name.
+        clearly_once: f64 = 2.5,
+        /// How many times the lowest duty at which a held motor drew a current another duty has to be for the silence at it to count: currents are read in steps.
+        held: f64 = 1.5,
+        /// Share of a new reading in the typical current: some ten readings, a third of a second, make it.
+        newest: f64 = 0.1,
+        /// Mean size that readings of no current may have, as a multiple of their root mean square: it is 0.8, and the whole is taken since that was measured too.
+        mean: f64 = 1.0,
+        /// Three standard deviations of that mean size, as a multiple of the root mean square: each is 0.6 for a single reading, and falls with the root of their number.
+        three_deviations: f64 = 1.8,
+    }
+}
 
 /// The current of the motor while it is driven.
 #[derive(Clone, Debug, Default)]
@@ -39,9 +47,9 @@ pub(crate) struct CurrentSilence {
 impl CurrentSilence {
     /// A reading of the driven motor. `most_amps` is the highest one that counts as no current.
     pub(crate) fn see(&mut self, t: f64, amps: f64, is_settled: bool, most_amps: f64) {
-        self.has_been_clear |= amps > CLEARLY_ONCE * most_amps;
+        self.has_been_clear |= amps > SILENCE.clearly_once * most_amps;
         self.silent.push_back((t, amps, is_settled));
-        while self.silent.get(1).is_some_and(|next| t - next.0 > OPEN_S) {
+        while self.silent.get(1).is_some_and(|next| t - next.0 > SILENCE.open_s) {
             self.silent.pop_front();
         }
         if amps > most_amps {
@@ -49,21 +57,21 @@ impl CurrentSilence {
             let settled = self.silent.drain(..).filter(|reading| reading.2);
             for (_, amps, _) in settled {
                 let typical = self.typical_amps.get_or_insert(amps);
-                *typical += NEWEST * (amps - *typical);
+                *typical += SILENCE.newest * (amps - *typical);
             }
         }
     }
 
     /// A reading of a motor that a loop holds with a duty.
     pub(crate) fn see_held(&mut self, duty: f64, amps: f64, most_amps: f64) {
-        if amps > CLEARLY_ONCE * most_amps {
+        if amps > SILENCE.clearly_once * most_amps {
             self.held_duty = Some(self.held_duty.map_or(duty, |lowest| lowest.min(duty)));
         }
     }
 
     /// Whether a motor that a loop holds with a duty has to draw a current, as it did with a clearly smaller one.
     pub(crate) fn is_drawn_at(&self, duty: f64) -> bool {
-        self.held_duty.is_some_and(|lowest| duty > HELD * lowest)
+        self.held_duty.is_some_and(|lowest| duty > SILENCE.held * lowest)
     }
 
     /// The motor is not driven.
@@ -73,7 +81,7 @@ impl CurrentSilence {
 
     /// Whether it typically draws clearly more than no current.
     pub(crate) fn is_clear(&self, most_amps: f64) -> bool {
-        self.typical_amps.is_some_and(|typical| typical > CLEARLY * most_amps)
+        self.typical_amps.is_some_and(|typical| typical > SILENCE.clearly * most_amps)
     }
 
     /// Whether all readings for long were no current, one by one and in their mean, given the root mean square of readings at rest.
@@ -81,7 +89,8 @@ impl CurrentSilence {
         let (Some(first), Some(last)) = (self.silent.front(), self.silent.back()) else { return false };
         let n = self.silent.len() as f64;
         let mean_amps = self.silent.iter().map(|reading| reading.1).sum::<f64>() / n;
-        let most_amps = NO_CURRENT_AMPS.max(noise_amps * (MEAN + THREE_DEVIATIONS / n.sqrt()));
-        last.0 - first.0 > OPEN_S && mean_amps <= most_amps
+        let most_amps =
+            SILENCE.no_current_amps.max(noise_amps * (SILENCE.mean + SILENCE.three_deviations / n.sqrt()));
+        last.0 - first.0 > SILENCE.open_s && mean_amps <= most_amps
     }
 }

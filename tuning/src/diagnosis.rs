@@ -7,38 +7,49 @@
 use crate::cause::Cause;
 use crate::motor_monitor::MotorMonitor;
 use crate::poll::Point;
+use crate::thresholds::thresholds;
 
-/// How long the motor is watched with its duty taken away, s.
-pub(crate) const DIAGNOSIS_S: f64 = 0.15;
-/// Least stall current that lets currents be compared, A.
-const TELLING_STALL_AMPS: f64 = 0.2;
-/// Current of a standing motor that readings tell from that of a turning one, A, and the least duty for it.
-const TELLING_AMPS: f64 = 0.15;
-const LEAST_DUTY: f64 = 0.10;
-/// How long before the alarm a fault may have come, s.
-const BEFORE_S: f64 = 0.22;
-/// Counts that a dead encoder may give.
-const DEAD_COUNTS: f64 = 1.5;
-/// A current that is off by more than this share of the stall current is just wrong.
-const WRONG: f64 = 0.3;
-/// Misfit from which on the currents may object, and how much better the other hypothesis must then be.
-const OBJECTION: f64 = 0.05;
-const BETTER: f64 = 0.6;
-const AGREE: f64 = 0.9;
-/// Largest error of mirrored speeds over the speeds, both squared: by itself, and where the currents say the same.
-const MIRROR_ERROR: (f64, f64) = (0.12, 0.6);
-/// Share of the current of a standing motor by which that of a turning one is short at the least; a battery sags by less.
-const SHORT: f64 = 0.3;
-/// A duty that drives; how much faster against it a motor must be than it was with it, as a factor and a share of the speed at full
-/// duty, and the distance that it must have gone, counts.
-const DRIVEN_DUTY: f64 = 0.03;
-const OUTRUN: f64 = 1.2;
-const LEAST_OUTRUN: f64 = 0.02;
-const LEAST_OUTRUN_COUNTS: f64 = 4.5;
-/// Misfit that says nothing.
-const SAME: f64 = 3e-4;
-/// How long the duty takes to come down and the winding's current to follow, s.
-const BRAKED_S: f64 = 0.066;
+thresholds! {
+    /// Which cause explains readings that the model does not.
+    pub(crate) DIAGNOSIS: Thresholds {
+        /// How long the motor is watched with its duty taken away, in seconds.
+        diagnosis_s: f64 = 0.15,
+        /// Stall current above which currents can be compared, in amperes.
+        telling_stall_amps: f64 = 0.2,
+        /// Current of a standing motor that readings tell from that of a turning one, in amperes.
+        telling_amps: f64 = 0.15,
+        /// Least duty at which readings tell the two apart, as a share of full.
+        least_duty: f64 = 0.10,
+        /// How long before the alarm a fault may have come, in seconds.
+        before_s: f64 = 0.22,
+        /// Counts that a dead encoder may give.
+        dead_counts: f64 = 1.5,
+        /// Largest error of a current that counts, as a share of the stall current: one that is off by more is just wrong.
+        wrong: f64 = 0.3,
+        /// Misfit of an explanation from which on the currents may speak against it, as a sum of squared shares of the stall current.
+        objection: f64 = 0.05,
+        /// Share of the misfit of a reversed encoder that an encoder as it is must stay below for the currents to object to a reversal.
+        better: f64 = 0.6,
+        /// Share of the misfit of an encoder as it is that a reversed one must stay below for the currents to speak for a reversal.
+        agree: f64 = 0.9,
+        /// Largest squared error of mirrored speeds over the squared speeds: by itself, and where the currents say the same.
+        mirror_error: (f64, f64) = (0.12, 0.6),
+        /// Least share by which the current of a turning motor is short of that of a standing one; a battery sags by less.
+        short: f64 = 0.3,
+        /// Duty above which the motor is driven, as a share of full.
+        driven_duty: f64 = 0.03,
+        /// How much faster against its duty a motor must be than it was with it, as a factor.
+        outrun: f64 = 1.2,
+        /// How much faster it must be on top of that, as a share of the speed at full duty.
+        least_outrun: f64 = 0.02,
+        /// Distance that it must have gone against its duty, in counts.
+        least_outrun_counts: f64 = 4.5,
+        /// Misfit that says nothing, as a sum of squared shares of the stall current.
+        same: f64 = 3e-4,
+        /// How long the duty takes to come down and the winding's current to follow, in seconds.
+        braked_s: f64 = 0.066,
+    }
+}
 
 /// One poll with what a hypothesis needs.
 struct Moment {
@@ -57,11 +68,11 @@ pub(crate) fn diagnose(monitor: &MotorMonitor, alarm_s: f64, after: &[Point]) ->
     if is_open(monitor, &polls, alarm_s) {
         return Cause::MotorOpened;
     }
-    let moments = moments(monitor, &polls, alarm_s - BEFORE_S);
-    let stall = monitor.stall_amps.filter(|stall| *stall > TELLING_STALL_AMPS);
+    let moments = moments(monitor, &polls, alarm_s - DIAGNOSIS.before_s);
+    let stall = monitor.stall_amps.filter(|stall| *stall > DIAGNOSIS.telling_stall_amps);
     let (gain, tau_s) = monitor.rough_model(alarm_s);
     let last = monitor.recent().next_back().map_or(0.0, |point| point.counts);
-    let alive = after.iter().any(|point| (point.counts - last).abs() > DEAD_COUNTS);
+    let alive = after.iter().any(|point| (point.counts - last).abs() > DIAGNOSIS.dead_counts);
     if gain > 0.0 && outruns(&moments, gain, monitor.load_duty, alarm_s) {
         return Cause::EncoderFlipped;
     }
@@ -74,15 +85,17 @@ pub(crate) fn diagnose(monitor: &MotorMonitor, alarm_s: f64, after: &[Point]) ->
     let hypotheses = Hypotheses { moments: &moments, gain, tau_s, limit: limit_of(monitor), alarm_s };
     let (stopped, flipped) = (hypotheses.as_counted().min(hypotheses.stands()), hypotheses.flipped());
     let likeness = hypotheses.likeness_of_mirror();
-    let currents_agree = stall.is_some() && stopped > OBJECTION && flipped < AGREE * stopped;
-    let currents_object = stall.is_some() && flipped > OBJECTION && stopped < BETTER * flipped;
-    let goes_on = likeness < if currents_agree { MIRROR_ERROR.1 } else { MIRROR_ERROR.0 };
+    let currents_agree =
+        stall.is_some() && stopped > DIAGNOSIS.objection && flipped < DIAGNOSIS.agree * stopped;
+    let currents_object =
+        stall.is_some() && flipped > DIAGNOSIS.objection && stopped < DIAGNOSIS.better * flipped;
+    let goes_on = likeness < if currents_agree { DIAGNOSIS.mirror_error.1 } else { DIAGNOSIS.mirror_error.0 };
     if goes_on && !currents_object { Cause::EncoderFlipped } else { Cause::Stalled }
 }
 
 /// Names why a motor that was pushed of late has not moved, or was counted `backwards`.
 pub(crate) fn why_unmoved(monitor: &MotorMonitor, backwards: bool) -> Cause {
-    let stall = monitor.stall_amps.filter(|stall| *stall > TELLING_STALL_AMPS);
+    let stall = monitor.stall_amps.filter(|stall| *stall > DIAGNOSIS.telling_stall_amps);
     let pushed: Vec<(f64, f64)> = monitor
         .recent()
         .filter_map(|point| Some((monitor.duty_at(point.t).abs(), point.amps?.abs())))
@@ -100,7 +113,7 @@ pub(crate) fn why_unmoved(monitor: &MotorMonitor, backwards: bool) -> Cause {
     let limit = limit_of(monitor);
     let short =
         pushed.iter().map(|(duty, amps)| 1.0 - amps / stall.unwrap_or(f64::INFINITY) / duty.min(limit));
-    let turns = stall.is_some() && middle(short.collect()).is_some_and(|short| short > SHORT);
+    let turns = stall.is_some() && middle(short.collect()).is_some_and(|short| short > DIAGNOSIS.short);
     if turns { Cause::EncoderLost } else { Cause::Stalled }
 }
 
@@ -112,7 +125,7 @@ fn middle(mut values: Vec<f64>) -> Option<f64> {
 /// Whether no current flows: not at the duty that was given at last, nor while the motor is braked.
 fn is_open(monitor: &MotorMonitor, polls: &[Point], alarm_s: f64) -> bool {
     let none = |amps: f64| amps.abs() <= monitor.no_current_amps();
-    let least_duty = monitor.start_duty.max(DRIVEN_DUTY);
+    let least_duty = monitor.start_duty.max(DIAGNOSIS.driven_duty);
     let driven = |point: &&Point| point.t < alarm_s && monitor.duty_at(point.t).abs() > least_duty;
     let before = polls.iter().rev().filter(driven).find_map(|point| point.amps);
     let mut after = polls.iter().filter(|point| point.t >= alarm_s).filter_map(|point| point.amps);
@@ -146,20 +159,22 @@ fn outruns(moments: &[Moment], gain: f64, load_duty: f64, alarm_s: f64) -> bool 
     // A load may turn the motor against its duty.
     let pull = |moment: &Moment| moment.duty - 1.5 * load_duty.abs() * moment.duty.signum();
     let before = || moments.iter().filter(|moment| moment.t < alarm_s);
-    let Some(last) = before().next_back().filter(|last| pull(last) * last.duty.signum() > DRIVEN_DUTY) else {
+    let Some(last) =
+        before().next_back().filter(|last| pull(last) * last.duty.signum() > DIAGNOSIS.driven_duty)
+    else {
         return false;
     };
     let direction = last.duty.signum();
-    let driven = || before().rev().take_while(|moment| pull(moment) * direction > DRIVEN_DUTY);
+    let driven = || before().rev().take_while(|moment| pull(moment) * direction > DIAGNOSIS.driven_duty);
     let against = driven().map(|moment| -moment.speed * direction).fold(0.0, f64::max);
     let with = before().map(|moment| moment.speed * direction).fold(0.0, f64::max);
     // Nor is one that is just being turned round.
     let began = driven().last().map_or(0.0, |first| -first.speed * direction);
     let with = with.max(began);
     let gone = driven().map(|moment| (moment.counts - last.counts) * direction).fold(0.0, f64::max);
-    gone > LEAST_OUTRUN_COUNTS
+    gone > DIAGNOSIS.least_outrun_counts
         && -last.speed * direction > 0.4 * against
-        && against > OUTRUN * with + LEAST_OUTRUN * gain
+        && against > DIAGNOSIS.outrun * with + DIAGNOSIS.least_outrun * gain
 }
 
 /// Whether currents are other than those of a motor that stands, while nothing is counted.
@@ -167,15 +182,16 @@ fn turns_unseen(monitor: &MotorMonitor, moments: &[Moment], alarm_s: f64) -> boo
     let limit = limit_of(monitor);
     let still = moments.iter().rposition(|moment| moment.speed != 0.0).map_or(0, |last| last + 1);
     let still = &moments[still..];
-    let least_duty = (TELLING_AMPS / monitor.stall_amps.unwrap_or(f64::INFINITY)).max(LEAST_DUTY);
+    let least_duty =
+        (DIAGNOSIS.telling_amps / monitor.stall_amps.unwrap_or(f64::INFINITY)).max(DIAGNOSIS.least_duty);
     let off: Vec<f64> = still
         .iter()
         .filter(|moment| moment.duty.abs() >= least_duty)
         .filter_map(|moment| Some(1.0 - moment.current? / moment.duty.abs().min(limit)))
         .collect();
-    let driven_off = middle(off).is_some_and(|middle| middle > SHORT);
+    let driven_off = middle(off).is_some_and(|middle| middle > DIAGNOSIS.short);
     let stall = monitor.stall_amps.unwrap_or(f64::INFINITY);
-    let braked = still.iter().filter(|moment| moment.duty == 0.0 && moment.t > alarm_s + BRAKED_S);
+    let braked = still.iter().filter(|moment| moment.duty == 0.0 && moment.t > alarm_s + DIAGNOSIS.braked_s);
     let braked: Vec<f64> = braked.filter_map(|moment| moment.current).collect();
     let first = braked.iter().take(2).sum::<f64>() / braked.len().clamp(1, 2) as f64;
     // What rings on a spring comes by nought again and again.
@@ -196,11 +212,11 @@ impl Hypotheses<'_> {
     fn miss(&self, moment: &Moment, speed: f64) -> f64 {
         let Some(current) = moment.current else { return 0.0 };
         let expected = (moment.duty - speed / self.gain).abs().min(self.limit);
-        (expected - current).abs().min(WRONG).powi(2)
+        (expected - current).abs().min(DIAGNOSIS.wrong).powi(2)
     }
 
     fn misfit(&self, speed: impl Fn(&Moment) -> f64) -> f64 {
-        self.moments.iter().map(|moment| self.miss(moment, speed(moment))).sum::<f64>() + SAME
+        self.moments.iter().map(|moment| self.miss(moment, speed(moment))).sum::<f64>() + DIAGNOSIS.same
     }
 
     /// The best misfit with the speed changed by `change` from some moment before the alarm on.

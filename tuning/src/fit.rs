@@ -6,52 +6,67 @@
 
 use crate::model::PlantModel;
 use crate::open_loop_record::{Actuation, OpenLoopRecord};
+use crate::thresholds::thresholds;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::storage::Owned;
 use nalgebra::{DMatrix, DVector, Dyn};
 use serde::{Deserialize, Serialize};
 
-/// Variance of a count's rounding, and the speed error that the model drifts with, over the speed and the root of a second.
-const ROUNDING: f64 = 0.1;
-const DRIFT: f64 = 0.003;
-/// Range of the actuation offset, s.
-const OFFSET_S: (f64, f64) = (-0.006, 0.030);
-/// Highest friction and load, as duty.
-const MOST_COULOMB: f64 = 0.35;
-const MOST_LOAD: f64 = 0.35;
-/// Prior standard deviation of the load, as duty: most axes have none.
-const LOAD_PRIOR: f64 = 0.03;
-/// Standard deviation of the offset about the usual one: perhaps a whole tick more, and the winding, s.
-const OFFSET_SIGMA_S: f64 = 0.0010;
-/// Highest sag, and its prior; standard deviation of a battery reading over the battery.
-const MOST_SAG: f64 = 0.4;
-const SAG_PRIOR: (f64, f64) = (0.05, 0.05);
-const VOLTS_SIGMA: f64 = 0.01;
-/// Prior of the time constant, s and as standard deviation of its logarithm: weak, for what polls cannot see.
-const TAU_PRIOR: (f64, f64) = (0.05, 1.2);
-/// Prior of the drive limit, as standard deviation of its logarithm, and above what it does not matter.
-const LIMIT_PRIOR: f64 = 0.10;
-const LIMIT_OF_INTEREST: f64 = 1.1;
-/// Prior of the duty's ramp, as standard deviation of its logarithm: most controllers follow the acceleration that came with the duty, and those that do not are
-/// far off, so that the prior gives way (a soft one). Another make that ramps half as fast had its time constant found three times too long.
-const RAMP_PRIOR: f64 = 0.02;
-/// Slowest and quickest ramp, over the one that was asked for.
-const RAMPS: (f64, f64) = (0.2, 5.0);
-/// What no record tells of gain and time constant, as standard deviations of their logarithms: cogging, friction that falls with the speed, uneven edges,
-/// the winding. Chosen on 156 motors of another make (seeds 501, 503, 601 and 602): without it two deviations of the time constant hold 83 % of the first two seeds, with
-/// 0.012 they hold 94 %, but 83 % of the other two. The gain's 0.004 held 90 % of 288 motors of the bench (seeds 7, 11 and 101); 0.006 holds 94 %.
-const UNMODELLED: (f64, f64) = (0.006, 0.025);
-/// The same of the friction's duty: the battery sags, stiction, viscous friction. Without it two deviations hold the friction of 72 % of those 288 motors, with it
-/// of 96 %.
-const UNMODELLED_COULOMB: f64 = 0.004;
+thresholds! {
+    /// The fit of motor and friction to the counts of the open loop: noises, priors and bounds.
+    FIT: Thresholds {
+        /// Variance of a count's rounding, in counts squared.
+        rounding: f64 = 0.1,
+        /// How far the counts drift off the model in a second, as a standard deviation over the counts that the motor makes in that second; it grows with the root of the
+        /// time.
+        drift: f64 = 0.003,
+        /// Lowest and highest actuation offset, in seconds.
+        offset_s: (f64, f64) = (-0.006, 0.030),
+        /// Highest friction, as a share of full duty.
+        most_coulomb: f64 = 0.35,
+        /// Highest load either way, as a share of full duty.
+        most_load: f64 = 0.35,
+        /// Prior standard deviation of the load, as a share of full duty: most axes have none.
+        load_prior: f64 = 0.03,
+        /// Standard deviation of the offset about the usual one, in seconds: perhaps a whole tick more, and the winding.
+        offset_sigma_s: f64 = 0.0010,
+        /// Highest sag of the battery, as a share of its voltage with the motor standing at full duty.
+        most_sag: f64 = 0.4,
+        /// Prior mean and standard deviation of the sag, as shares in the same way.
+        sag_prior: (f64, f64) = (0.05, 0.05),
+        /// Standard deviation of a battery reading, as a share of the battery's voltage.
+        volts_sigma: f64 = 0.01,
+        /// Prior of the time constant: its median, in seconds, and the standard deviation of its logarithm. It is weak, for what polls cannot see.
+        tau_prior: (f64, f64) = (0.05, 1.2),
+        /// Prior standard deviation of the logarithm of the drive limit.
+        limit_prior: f64 = 0.10,
+        /// Drive limit above which it does not matter, as a share of the stall current.
+        limit_of_interest: f64 = 1.1,
+        /// Prior standard deviation of the logarithm of the duty's ramp: most controllers follow the acceleration that came with the duty, and those that do not are far
+        /// off, so that the prior gives way (a soft one). Another make that ramps half as fast had its time constant found three times too long.
+        ramp_prior: f64 = 0.02,
+        /// Slowest and quickest ramp, as multiples of the one that was asked for.
+        ramps: (f64, f64) = (0.2, 5.0),
+        /// What no record tells of gain and time constant, as standard deviations of their logarithms: cogging, friction that falls with the speed, uneven edges, the
+        /// winding. Chosen on 156 motors of another make (seeds 501, 503, 601 and 602): without it two deviations of the time constant hold 83 % of the first two seeds,
+        /// with 0.012 they hold 94 %, but 83 % of the other two. The gain's 0.004 held 90 % of 288 motors of the bench (seeds 7, 11 and 101); 0.006 holds 94 %.
+        unmodelled: (f64, f64) = (0.006, 0.025),
+        /// The same of the friction, as a share of full duty: the battery sags, stiction, viscous friction. Without it two deviations hold the friction of 72 % of those
+        /// 288 motors, with it of 96 %.
+        unmodelled_coulomb: f64 = 0.004,
+        /// How many start values are followed: those that explain the record best as they are.
+        starts_followed: usize = 2,
+        /// Relative tolerance by which the starts are told apart. A ten-thousandth of the cost is far below what one poll adds to it.
+        roughly: f64 = 1e-4,
+        /// Relative tolerance of the fit that is kept: a hundred-thousandth of the narrowest interval.
+        finely: f64 = 1e-8,
+        /// Standard deviations from which on a residual counts less and less.
+        knee: f64 = 3.0,
+    }
+}
+
 /// Start values of the time constant, s, besides the one that is passed in.
 const STARTS_S: [f64; 4] = [0.008, 0.04, 0.2, 1.0];
-/// How many of them are followed: those that explain the record best as they are.
-const STARTS_FOLLOWED: usize = 2;
-/// Tolerance by which the starts are told apart, and that of the one that is kept, relative. A ten-thousandth of the cost is far below what one poll adds to it; the
-/// fine one is a hundred-thousandth of the narrowest interval.
-const ROUGHLY: f64 = 1e-4;
-const FINELY: f64 = 1e-8;
 
 /// A model and how well the record supports it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -91,7 +106,7 @@ pub fn fit(
         return None;
     }
     let seen = record.limited_share() > 0.01;
-    let limit = limit.filter(|limit| seen || *limit < LIMIT_OF_INTEREST).or(seen.then_some(0.5));
+    let limit = limit.filter(|limit| seen || *limit < FIT.limit_of_interest).or(seen.then_some(0.5));
     let start = |tau: f64| {
         let tau = tau.clamp(0.003, 5.0);
         Problem::new(record, &Parameters { ln_gain: gain.ln(), ln_tau: tau.ln(), limit, brake_share })
@@ -105,9 +120,10 @@ pub fn fit(
         })
         .collect();
     starts.sort_by(|(cost, _), (other, _)| cost.total_cmp(other));
-    let ends = starts.into_iter().take(STARTS_FOLLOWED).map(|(_, problem)| minimised(problem, ROUGHLY));
+    let ends =
+        starts.into_iter().take(FIT.starts_followed).map(|(_, problem)| minimised(problem, FIT.roughly));
     let (problem, _) = ends.filter(|(_, cost)| cost.is_finite()).min_by(|(_, a), (_, b)| a.total_cmp(b))?;
-    Some(minimised(problem, FINELY).0.report())
+    Some(minimised(problem, FIT.finely).0.report())
 }
 
 /// The problem at its least, and the cost there; `tolerance` is that of the cost and of the parameters, relative.
@@ -136,9 +152,9 @@ struct Problem<'a> {
 
 impl<'a> Problem<'a> {
     fn new(record: &'a OpenLoopRecord, start: &Parameters) -> Self {
-        let mut q = vec![start.ln_gain, start.ln_tau, unbounded(0.05, (0.0, MOST_COULOMB)), 0.0];
-        q.push(unbounded(0.004, OFFSET_S));
-        q.push(unbounded(SAG_PRIOR.0, (0.0, MOST_SAG)));
+        let mut q = vec![start.ln_gain, start.ln_tau, unbounded(0.05, (0.0, FIT.most_coulomb)), 0.0];
+        q.push(unbounded(0.004, FIT.offset_s));
+        q.push(unbounded(FIT.sag_prior.0, (0.0, FIT.most_sag)));
         q.push(0.0);
         q.extend(start.limit.map(f64::ln));
         let mut noise: Vec<(f64, f64)> = record
@@ -147,7 +163,10 @@ impl<'a> Problem<'a> {
             .map(|pair| {
                 let dt = (pair[1].0 - pair[0].0).max(1e-4);
                 let speed = (pair[1].1 - pair[0].1) / dt;
-                (ROUNDING + (record.actuation.stamp_s * speed).powi(2), (DRIFT * speed).powi(2) * dt + 1e-3)
+                (
+                    FIT.rounding + (record.actuation.stamp_s * speed).powi(2),
+                    (FIT.drift * speed).powi(2) * dt + 1e-3,
+                )
             })
             .collect();
         noise.insert(0, noise.first().copied().unwrap_or((1.0, 1.0)));
@@ -159,13 +178,13 @@ impl<'a> Problem<'a> {
         let model = PlantModel {
             gain_counts_per_s: q[0].clamp(-5.0, 20.0).exp(),
             tau_s: q[1].clamp(-6.5, 3.0).exp(),
-            coulomb_duty: bounded(q[2], (0.0, MOST_COULOMB)),
-            load_duty: bounded(q[3], (-MOST_LOAD, MOST_LOAD)),
+            coulomb_duty: bounded(q[2], (0.0, FIT.most_coulomb)),
+            load_duty: bounded(q[3], (-FIT.most_load, FIT.most_load)),
             drive_limit,
             brake_limit: drive_limit.map(|limit| limit * self.brake_share),
-            sag: bounded(q[5], (0.0, MOST_SAG)),
+            sag: bounded(q[5], (0.0, FIT.most_sag)),
         };
-        (model, bounded(q[4], OFFSET_S))
+        (model, bounded(q[4], FIT.offset_s))
     }
 
     fn evaluate(&self, q: &DVector<f64>) -> DVector<f64> {
@@ -176,14 +195,15 @@ impl<'a> Problem<'a> {
         self.record.predict_with(&actuation, (&model, offset), &mut predicted, &mut volts);
         let errors: Vec<f64> = self.record.counts.iter().zip(&predicted).map(|((_, y), p)| y - p).collect();
         let steps = innovations(&errors, &self.noise);
-        let readings = self.record.volts.iter().zip(&volts).map(|((_, v), p)| soft((v - p) / VOLTS_SIGMA));
+        let readings =
+            self.record.volts.iter().zip(&volts).map(|((_, v), p)| soft((v - p) / FIT.volts_sigma));
         let prior = [
-            model.load_duty / LOAD_PRIOR,
-            (offset - self.record.actuation.offset_s) / OFFSET_SIGMA_S,
-            (model.sag - SAG_PRIOR.0) / SAG_PRIOR.1,
-            (model.tau_s / TAU_PRIOR.0).ln() / TAU_PRIOR.1,
-            soft(q[6] / RAMP_PRIOR),
-            q.get(7).zip(self.limit).map_or(0.0, |(ln, limit)| (ln - limit.ln()) / LIMIT_PRIOR),
+            model.load_duty / FIT.load_prior,
+            (offset - self.record.actuation.offset_s) / FIT.offset_sigma_s,
+            (model.sag - FIT.sag_prior.0) / FIT.sag_prior.1,
+            (model.tau_s / FIT.tau_prior.0).ln() / FIT.tau_prior.1,
+            soft(q[6] / FIT.ramp_prior),
+            q.get(7).zip(self.limit).map_or(0.0, |(ln, limit)| (ln - limit.ln()) / FIT.limit_prior),
         ];
         DVector::from_vec(steps.into_iter().chain(readings).chain(prior).collect())
     }
@@ -200,15 +220,15 @@ impl<'a> Problem<'a> {
         let scale = chi_square.max(1.0);
         let covariance = information.try_inverse();
         let sd = |n: usize| covariance.as_ref().map_or(f64::INFINITY, |c| (c[(n, n)].abs() * scale).sqrt());
-        let slope =
-            bounded(self.q[2] + 1e-4, (0.0, MOST_COULOMB)) - bounded(self.q[2] - 1e-4, (0.0, MOST_COULOMB));
+        let slope = bounded(self.q[2] + 1e-4, (0.0, FIT.most_coulomb))
+            - bounded(self.q[2] - 1e-4, (0.0, FIT.most_coulomb));
         Fit {
             model,
             offset_s,
             chi_square,
-            sd_ln_gain: sd(0).hypot(UNMODELLED.0),
-            sd_ln_tau: sd(1).hypot(UNMODELLED.1),
-            sd_coulomb: (sd(2) * slope / 2e-4).hypot(UNMODELLED_COULOMB),
+            sd_ln_gain: sd(0).hypot(FIT.unmodelled.0),
+            sd_ln_tau: sd(1).hypot(FIT.unmodelled.1),
+            sd_coulomb: (sd(2) * slope / 2e-4).hypot(FIT.unmodelled_coulomb),
             ramp: ramp(&self.q),
         }
     }
@@ -268,14 +288,13 @@ pub(crate) fn innovations(errors: &[f64], noise: &[(f64, f64)]) -> Vec<f64> {
 
 /// A residual whose square grows only linearly beyond a few standard deviations (soft L1).
 fn soft(r: f64) -> f64 {
-    const KNEE: f64 = 3.0;
-    let x = r / KNEE;
-    KNEE * (2.0 * ((1.0 + x * x).sqrt() - 1.0)).sqrt().copysign(x)
+    let x = r / FIT.knee;
+    FIT.knee * (2.0 * ((1.0 + x * x).sqrt() - 1.0)).sqrt().copysign(x)
 }
 
 /// The ramp of the duty over the one that was asked for.
 fn ramp(q: &DVector<f64>) -> f64 {
-    q[6].exp().clamp(RAMPS.0, RAMPS.1)
+    q[6].exp().clamp(FIT.ramps.0, FIT.ramps.1)
 }
 
 fn bounded(x: f64, (low, high): (f64, f64)) -> f64 {

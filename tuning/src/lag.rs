@@ -14,91 +14,84 @@ use crate::experiment_guard::{ExperimentGuard, Input};
 use crate::law::Law;
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::model::{Gains, Lag, PlantModel};
+use crate::thresholds::thresholds;
 use crate::ticks::{Setpoint, TickLoop};
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::storage::Owned;
 use nalgebra::{DMatrix, DVector, Dyn, U6, Vector6};
 use serde::{Deserialize, Serialize};
 
-/// What the fit takes for granted. Chosen on 96 motors of another make (seeds 501 and 502 of `device/mcp/axis/tests/other_make`), where they give a lag within
-/// 0.6 ms in the median.
-struct LagPriors {
-    /// Standard deviation of the logarithm of the time constant, over that of the open-loop fit, and its bounds.
-    tau: (f64, f64, f64),
-    /// Standard deviation of the logarithm of the gain: the open-loop fit knows it well.
-    gain: f64,
-    /// Standard deviation of the time from a command's stamp to its effect, beyond the wait for a tick, s: half the asymmetry of a line of 2 ms.
-    offset_s: f64,
-    /// Time constant of a winding and its standard deviation, s: 0.2 to 3 ms in brushed motors.
-    winding_s: (f64, f64),
-    /// From which sum of filter and delay on a lag is unlikely, and how softly, s.
-    long_s: (f64, f64),
-    /// Standard deviation of a time stamp, s.
-    stamp_s: f64,
-    /// Speed by which the model drifts off, over the speed and the root of a second.
-    drift: f64,
-    /// What the model of a quiet duty is trusted to.
-    duty: f64,
-    /// Standard deviation of the logarithm of the duty's noise against what rounding makes of it under a lag: a filter lets through much less than a delay.
-    /// Uneven edges of an encoder and speeds of whole counts a tick make it half or twice as loud.
-    rounding: f64,
-    /// Share of what the duty changes by in a tick that it may be off by: the phase of the tick, 1 / sqrt(12).
-    flank: f64,
+thresholds! {
+    /// What the fit takes for granted. Chosen on 96 motors of another make (seeds 501 and 502 of `device/mcp/axis/tests/other_make`), where they give a lag within
+    /// 0.6 ms in the median.
+    LAG_PRIORS: LagPriors {
+        /// Standard deviation of the logarithm of the time constant: as a multiple of that of the open-loop fit, and the lowest and highest value that it may have.
+        tau: (f64, f64, f64) = (1.0, 0.02, 0.6),
+        /// Standard deviation of the logarithm of the gain: the open-loop fit knows it well.
+        gain: f64 = 0.01,
+        /// Standard deviation of the time from a command's stamp to its effect, beyond the wait for a tick, in seconds: half the asymmetry of a line of 2 ms.
+        offset_s: f64 = 0.001,
+        /// Time constant of a winding and its standard deviation, in seconds: 0.2 to 3 ms in brushed motors.
+        winding_s: (f64, f64) = (0.001, 0.001),
+        /// Sum of filter and delay from which on a lag is unlikely, and the standard deviation of what lies beyond it, in seconds.
+        long_s: (f64, f64) = (0.012, 0.008),
+        /// Standard deviation of a time stamp, in seconds.
+        stamp_s: f64 = 0.0006,
+        /// How far the counts drift off the model in a second, as a standard deviation over the counts that the motor makes in that second; it grows with the root of the
+        /// time.
+        drift: f64 = 0.003,
+        /// Standard deviation to which the model of a quiet duty is trusted, as a share of full duty.
+        duty: f64 = 0.004,
+        /// Standard deviation of the logarithm of the duty's noise against what rounding makes of it under a lag: a filter lets through much less than a delay. Uneven
+        /// edges of an encoder and speeds of whole counts a tick make it half or twice as loud.
+        rounding: f64 = 0.5,
+        /// How far the duty may be off, as a share of what it changes by in a tick: the phase of the tick, 1 / sqrt(12).
+        flank: f64 = 0.3,
+    }
 }
 
-const PRIORS: LagPriors = LagPriors {
-    tau: (1.0, 0.02, 0.6),
-    gain: 0.01,
-    offset_s: 0.001,
-    winding_s: (0.001, 0.001),
-    long_s: (0.012, 0.008),
-    stamp_s: 0.0006,
-    drift: 0.003,
-    duty: 0.004,
-    rounding: 0.5,
-    flank: 0.3,
-};
-
-/// How wide the interval is. Measured: with these 90 to 99 % of the intervals hold the lag (MEASURED.md, "Intervals").
-struct LagWidths {
-    /// Standard deviations on either side.
-    deviations: f64,
-    /// What no record tells, as standard deviation: a part that does not change, s, and one that goes with the tick (whether a sum is used before or after
-    /// the present error is added, how a filter is discretised).
-    unmodelled: (f64, f64),
-    /// By how much that is less or more, with the reduced chi-square of the fit: a loop that the model explains to a third of its noise hides less than one that it explains
-    /// badly. Of 400 motors (seeds 7 and 11) the lag of those with a chi-square below 0.5 was within 1.1 ms at the 95th percentile, above 1.3 within 5.2 ms.
-    by_misfit: (f64, f64),
-    /// Noise of the duty at which the standard deviation doubles: a loop that the rounding of counts drives into its limits is no longer linear.
-    loud_duty: f64,
-    /// What another minimum may cost more and still count, in units of the misfit.
-    likely: f64,
+thresholds! {
+    /// How wide the interval is. Measured: with these 90 to 99 % of the intervals hold the lag (MEASURED.md, "Intervals").
+    LAG_WIDTHS: LagWidths {
+        /// Standard deviations on either side of the lag.
+        deviations: f64 = 2.0,
+        /// What no record tells, as standard deviations: a part that does not change, in seconds, and a part that goes with the tick, as a share of it (whether a sum is
+        /// used before or after the present error is added, how a filter is discretised).
+        unmodelled: (f64, f64) = (0.0004, 0.15),
+        /// Least and greatest factor of that. Between them the factor is the reduced chi-square of the fit: a loop that the model explains to a third of its noise hides
+        /// less than one that it explains badly. Of 400 motors (seeds 7 and 11) the lag of those with a chi-square below 0.5 was within 1.1 ms at the 95th percentile,
+        /// above 1.3 within 5.2 ms.
+        by_misfit: (f64, f64) = (0.3, 2.0),
+        /// Noise of the duty, as a share of full, at which the standard deviation doubles: a loop that the rounding of counts drives into its limits is no longer linear.
+        loud_duty: f64 = 0.25,
+        /// How much larger than the least the misfit of another minimum may be for it to count, in units of the reduced chi-square (of 1 where that is less).
+        likely: f64 = 4.0,
+    }
 }
 
-const WIDTHS: LagWidths = LagWidths {
-    deviations: 2.0,
-    unmodelled: (0.0004, 0.15),
-    by_misfit: (0.3, 2.0),
-    loud_duty: 0.25,
-    likely: 4.0,
-};
+thresholds! {
+    /// When the fit of the lag ends, and what it is suspicious of.
+    LAG: Thresholds {
+        /// Misfit of the closed loop (reduced chi-square) above which its lag is not all that there may be: a springy joint of seed 905 of the bench that was called
+        /// tuned at a true Ms of 1.9 has 1.32, rigid motors up to 1.26.
+        unexplained: f64 = 1.25,
+        /// Step by which slopes are taken, in units of each parameter.
+        slope_step: f64 = 0.02,
+        /// How far a parameter may lie outside its bounds, as a standard deviation in units of the parameter.
+        bound: f64 = 0.1,
+        /// How much longer than the shortest an exchange may take, in seconds: a longer one says too little about when its counts were read.
+        late_s: f64 = 0.004,
+        /// Relative change of misfit and parameters that ends a fit, as in the fit of moves: a thousandth of what tells two starts apart.
+        enough: f64 = 1e-5,
+        /// Standard deviations from which on a residual counts less and less.
+        knee: f64 = 3.0,
+    }
+}
 
-/// Misfit of the closed loop from which on its lag is not all that there may be: a springy joint of seed 905 of the bench that was called tuned at a true Ms of 1.9 has 1.32,
-/// rigid motors up to 1.26.
-const UNEXPLAINED: f64 = 1.25;
 /// Where the fit starts: filter, s, and delay, ticks.
 const STARTS: [(f64, f64); 4] = [(0.001, 0.2), (0.006, 0.2), (0.001, 1.2), (0.010, 1.0)];
-/// Units of the parameters, and the steps by which slopes are taken, in those.
+/// Units of the parameters: filter, delay and winding, s; logarithm of the time constant; time from a command's stamp to its effect, s; logarithm of the gain.
 const UNITS: [f64; 6] = [1e-3, 1e-3, 1e-3, 0.05, 1e-3, 0.01];
-const SLOPE_STEP: f64 = 0.02;
-/// How hard it is held within its bounds, units of a parameter per standard deviation.
-const BOUND: f64 = 0.1;
-/// An exchange that took this much longer than the shortest says too little about when its counts were read, s.
-const LATE_S: f64 = 0.004;
-/// Relative change of misfit and parameters that ends a fit, as of moves: a thousandth of what tells two starts apart.
-const ENOUGH: f64 = 1e-5;
-/// Standard deviations from which on a residual counts less and less.
-const KNEE: f64 = 3.0;
 
 /// The closed-loop record.
 #[derive(Clone, Debug, Default)]
@@ -127,7 +120,7 @@ impl ClosedLoopRecord {
         let points = || guard.points.iter().zip(&guard.exchanges).filter(|(p, _)| inside(p.t));
         // The quickest exchanges show what the line takes by itself; when in a longer one the counts were read is open.
         let shortest = points().map(|(_, took)| took.1).fold(f64::INFINITY, f64::min);
-        let prompt = || points().filter(|(_, took)| took.1 - shortest <= LATE_S);
+        let prompt = || points().filter(|(_, took)| took.1 - shortest <= LAG.late_s);
         let n = prompt().count().max(1) as f64;
         let stamps = L::stamps(&guard.setup.held);
         let open = prompt().map(|(_, took)| (took.1 - shortest).powi(2)).sum::<f64>() / n;
@@ -160,7 +153,7 @@ impl LagFit {
     /// Whether the closed loop did what no lag explains, such as a springy shaft does.
     #[must_use]
     pub fn is_unexplained(&self) -> bool {
-        self.chi_square > UNEXPLAINED
+        self.chi_square > LAG.unexplained
     }
 }
 
@@ -195,7 +188,7 @@ pub fn fit_lag<L: Law>(
     for (filter_s, delay_ticks) in STARTS {
         let start = known.inside(filter_s, delay_ticks * tick_s);
         let problem = Problem { known: &known, q: start };
-        let search = LevenbergMarquardt::new().with_patience(4).with_ftol(ENOUGH).with_xtol(ENOUGH);
+        let search = LevenbergMarquardt::new().with_patience(4).with_ftol(LAG.enough).with_xtol(LAG.enough);
         let (problem, report) = search.minimize(problem);
         if report.objective_function.is_finite() {
             found.push((2.0 * report.objective_function, problem.q, problem));
@@ -205,15 +198,16 @@ pub fn fit_lag<L: Law>(
     let readings = best.2.known.readings.max(1) as f64;
     let chi_square = best.0 / readings;
     let scale = chi_square.max(1.0);
-    let loud = 1.0 + (known.loudest() / WIDTHS.loud_duty).powi(2);
-    let (least, most) = WIDTHS.by_misfit;
-    let floor_s = WIDTHS.unmodelled.0.hypot(WIDTHS.unmodelled.1 * tick_s) * chi_square.clamp(least, most);
+    let loud = 1.0 + (known.loudest() / LAG_WIDTHS.loud_duty).powi(2);
+    let (least, most) = LAG_WIDTHS.by_misfit;
+    let floor_s =
+        LAG_WIDTHS.unmodelled.0.hypot(LAG_WIDTHS.unmodelled.1 * tick_s) * chi_square.clamp(least, most);
     let (mut shortest, mut longest) = (f64::INFINITY, 0.0_f64);
-    for (_, q, problem) in found.iter().filter(|other| other.0 <= best.0 + WIDTHS.likely * scale) {
+    for (_, q, problem) in found.iter().filter(|other| other.0 <= best.0 + LAG_WIDTHS.likely * scale) {
         let total = known.parts(q).iter().sum::<f64>();
         let sd = loud * (problem.deviation() * scale.sqrt()).hypot(floor_s);
-        shortest = shortest.min(total - WIDTHS.deviations * sd);
-        longest = longest.max(total + WIDTHS.deviations * sd);
+        shortest = shortest.min(total - LAG_WIDTHS.deviations * sd);
+        longest = longest.max(total + LAG_WIDTHS.deviations * sd);
     }
     let [filter_s, delay_s, winding_s] = known.parts(&best.1);
     let lag = Lag { filter_s, delay_ticks: (delay_s + winding_s) / tick_s };
@@ -237,7 +231,7 @@ struct Known<'a, L: Law> {
 
 impl<'a, L: Law> Known<'a, L> {
     fn new(stretches: &'a [Stretch], plant: &PlantModel, law: &L, qpps: f64, sd_ln_tau: f64) -> Self {
-        let (factor, least, most) = PRIORS.tau;
+        let (factor, least, most) = LAG_PRIORS.tau;
         let readings = |record: &ClosedLoopRecord| {
             let from_s = record.judged_from_s();
             let counts = record.counts.iter().filter(|count| count.0 >= from_s).count();
@@ -248,7 +242,7 @@ impl<'a, L: Law> Known<'a, L> {
             noises: stretches
                 .iter()
                 .map(|stretch| {
-                    let heard = noise(&stretch.record).hypot(PRIORS.duty);
+                    let heard = noise(&stretch.record).hypot(LAG_PRIORS.duty);
                     heard.max(rounding_between_plateaus(plant, law, &stretch.gains, qpps))
                 })
                 .collect(),
@@ -275,7 +269,7 @@ impl<'a, L: Law> Known<'a, L> {
     /// Start values within the bounds.
     fn inside(&self, filter_s: f64, delay_s: f64) -> Vector6<f64> {
         let [longest_filter, longest_delay] = self.longest();
-        let times = [filter_s.min(longest_filter), delay_s.min(longest_delay), PRIORS.winding_s.0];
+        let times = [filter_s.min(longest_filter), delay_s.min(longest_delay), LAG_PRIORS.winding_s.0];
         Vector6::from_fn(|n, _| times.get(n).map_or(0.0, |time_s| time_s / UNITS[n]))
     }
 
@@ -308,15 +302,15 @@ impl<'a, L: Law> Known<'a, L> {
             let predicted = LoopPlant::new(DiscretePlant::of(&model, tick_s), &self.law, whole)
                 .margins(&stretch.gains, self.qpps)
                 .noise_duty;
-            all.push(soft((noise / predicted.hypot(PRIORS.duty)).ln() / PRIORS.rounding));
+            all.push(soft((noise / predicted.hypot(LAG_PRIORS.duty)).ln() / LAG_PRIORS.rounding));
         }
         all.push(q[3] * UNITS[3] / self.sd_ln_tau);
-        all.push(offset_s / PRIORS.offset_s);
-        all.push(q[5] * UNITS[5] / PRIORS.gain);
-        all.push((winding_s - PRIORS.winding_s.0) / PRIORS.winding_s.1);
-        all.push((filter_s + delay_s - PRIORS.long_s.0).max(0.0) / PRIORS.long_s.1);
+        all.push(offset_s / LAG_PRIORS.offset_s);
+        all.push(q[5] * UNITS[5] / LAG_PRIORS.gain);
+        all.push((winding_s - LAG_PRIORS.winding_s.0) / LAG_PRIORS.winding_s.1);
+        all.push((filter_s + delay_s - LAG_PRIORS.long_s.0).max(0.0) / LAG_PRIORS.long_s.1);
         for (n, part) in [filter_s, delay_s, winding_s].into_iter().enumerate() {
-            all.push((q[n] - part / UNITS[n]) / BOUND);
+            all.push((q[n] - part / UNITS[n]) / LAG.bound);
         }
         DVector::from_vec(all)
     }
@@ -333,8 +327,8 @@ impl<L: Law> Problem<'_, L> {
         let columns: Vec<DVector<f64>> = (0..UNITS.len())
             .map(|n| {
                 let mut up = self.q;
-                up[n] += SLOPE_STEP;
-                (self.known.residuals(&up) - &here) / SLOPE_STEP
+                up[n] += LAG.slope_step;
+                (self.known.residuals(&up) - &here) / LAG.slope_step
             })
             .collect();
         DMatrix::from_columns(&columns)
@@ -518,7 +512,7 @@ fn misfits<L: Law>(
     let tick_s = law.tick_s();
     let from_s = record.judged_from_s();
     let age_s = if record.is_dated { 0.0 } else { tick_s / 12.0_f64.sqrt() };
-    let stamp_s = PRIORS.stamp_s.hypot(record.stamp_s).hypot(age_s);
+    let stamp_s = LAG_PRIORS.stamp_s.hypot(record.stamp_s).hypot(age_s);
     let mut drift: Option<(f64, f64, f64, f64)> = None;
     for &(t, count) in record.counts.iter().filter(|count| count.0 >= from_s) {
         let position = followed.position_at(t);
@@ -529,7 +523,7 @@ fn misfits<L: Law>(
                 let dt = (t - t0).max(1e-4);
                 let speed = (position - position0) / dt;
                 let white = 1.0 / 12.0 + (stamp_s * speed).powi(2);
-                let walked = variance + (PRIORS.drift * speed).powi(2) * dt + 1e-3;
+                let walked = variance + (LAG_PRIORS.drift * speed).powi(2) * dt + 1e-3;
                 let spread = walked + white;
                 let innovation = error - known;
                 all.push(soft(innovation / spread.sqrt()));
@@ -543,7 +537,7 @@ fn misfits<L: Law>(
     let compared: Vec<(f64, f64)> = judged
         .map(|&(t, duty)| {
             let flank = followed.duty_at(t + half_s) - followed.duty_at(t - half_s);
-            (duty - followed.duty_at(t), noise.hypot(PRIORS.flank * flank))
+            (duty - followed.duty_at(t), noise.hypot(LAG_PRIORS.flank * flank))
         })
         .collect();
     let weights: f64 = compared.iter().map(|(_, sigma)| sigma.powi(-2)).sum();
@@ -553,8 +547,8 @@ fn misfits<L: Law>(
 
 /// A residual whose square grows only linearly beyond some standard deviations (soft L1, Huber 1964).
 fn soft(r: f64) -> f64 {
-    let x = r / KNEE;
-    KNEE * (2.0 * ((1.0 + x * x).sqrt() - 1.0)).sqrt().copysign(x)
+    let x = r / LAG.knee;
+    LAG.knee * (2.0 * ((1.0 + x * x).sqrt() - 1.0)).sqrt().copysign(x)
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use crate::experiment_guard::{ExperimentGuard, GuardOptions};
 use crate::law::Law;
 use crate::request::Method;
 use crate::setup::LoopAxis;
+use crate::thresholds::thresholds;
 
 /// A law that a run can find out, where [`Facts::can_be_probed`](crate::law::Facts) says so.
 pub trait LawProbe: Law {
@@ -22,19 +23,27 @@ pub trait LawProbe: Law {
     }
 }
 
-/// Duty above the starting one at which the unfiltered speed is read.
-const READING_DUTY: f64 = 0.02;
-/// How long and how far the motor turns each way for that, and how many readings are enough.
-const READING_S: f64 = 0.5;
-const READING_COUNTS: f64 = 300.0;
-const ENOUGH_READINGS: usize = 40;
-/// Readings that are multiples of a step, at the least, and how far they may be from it, counts/s: they are rounded.
-const LEAST_READINGS: usize = 6;
-const ROUNDING: f64 = 1.01;
-/// Readings nearer to each other than this are one and the same, counts/s.
-const LEAST_STEP: f64 = 20.0;
-/// The smallest reading may be so many steps.
-const MOST_STEPS: i32 = 8;
+thresholds! {
+    /// How the controller's law is read off its duties at rest.
+    LAW_PROBE: Thresholds {
+        /// Duty above the starting one at which the unfiltered speed is read, as a share of full.
+        reading_duty: f64 = 0.02,
+        /// How long the motor turns each way for that, in seconds.
+        reading_s: f64 = 0.5,
+        /// How far the motor turns each way for that, in counts.
+        reading_counts: f64 = 300.0,
+        /// Readings that are enough, each way.
+        enough_readings: usize = 40,
+        /// Fewest readings from which a step is told that all of them are multiples of.
+        least_readings: usize = 6,
+        /// How far a reading may be from a multiple of the step, in counts per second: they are rounded.
+        rounding: f64 = 1.01,
+        /// Readings nearer to each other than this are one and the same, in counts per second.
+        least_step: f64 = 20.0,
+        /// Most steps that the smallest reading may be.
+        most_steps: i32 = 8,
+    }
+}
 
 /// What [`find_law`] found.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,7 +75,7 @@ fn look<L: LawProbe>(guard: &mut ExperimentGuard<'_, L>) -> Result<LawFound<L>, 
     guard.progress("Checking the wiring with a little duty");
     let probe = run_probe(guard, 1.0)?;
     guard.progress("Reading the unfiltered speed while the motor creeps");
-    let speed_step = speed_step(guard, probe.start_duty, READING_COUNTS)?;
+    let speed_step = speed_step(guard, probe.start_duty, LAW_PROBE.reading_counts)?;
     guard.progress("Finding out the law of the loop");
     let held = guard.setup.held;
     let findings = match guard.facts.can_be_probed {
@@ -88,7 +97,7 @@ pub fn speed_step<L: Law>(
 ) -> Result<Option<f64>, Cause> {
     let mut speeds = Vec::new();
     for direction in [1.0, -1.0] {
-        creep(guard, direction * (start_duty + READING_DUTY), counts, &mut speeds)?;
+        creep(guard, direction * (start_duty + LAW_PROBE.reading_duty), counts, &mut speeds)?;
         guard.come_to_rest()?;
     }
     Ok(step_of(&speeds))
@@ -103,7 +112,7 @@ fn creep<L: Law>(
 ) -> Result<(), Cause> {
     guard.poll(false)?;
     let from = guard.points.last().map_or(0.0, |point| point.counts);
-    let (until_s, enough) = (guard.now_s() + READING_S, speeds.len() + ENOUGH_READINGS);
+    let (until_s, enough) = (guard.now_s() + LAW_PROBE.reading_s, speeds.len() + LAW_PROBE.enough_readings);
     guard.duty(duty)?;
     while guard.now_s() < until_s && speeds.len() < enough {
         let point = guard.poll(false)?;
@@ -119,16 +128,16 @@ fn creep<L: Law>(
 fn step_of(speeds: &[i32]) -> Option<f64> {
     let mut sorted: Vec<f64> = speeds.iter().map(|speed| f64::from(speed.abs())).collect();
     sorted.sort_by(f64::total_cmp);
-    let smallest = sorted.first().copied().filter(|_| speeds.len() >= LEAST_READINGS)?;
+    let smallest = sorted.first().copied().filter(|_| speeds.len() >= LAW_PROBE.least_readings)?;
     // A quick motor's readings are many steps each, but one from the next may be one.
-    let apart = sorted.windows(2).map(|pair| pair[1] - pair[0]).filter(|apart| *apart > LEAST_STEP);
+    let apart = sorted.windows(2).map(|pair| pair[1] - pair[0]).filter(|apart| *apart > LAW_PROBE.least_step);
     let smallest = apart.fold(smallest, f64::min);
-    (1..=MOST_STEPS).map(|parts| smallest / f64::from(parts)).find_map(|guess| {
+    (1..=LAW_PROBE.most_steps).map(|parts| smallest / f64::from(parts)).find_map(|guess| {
         // The larger readings tell it more finely.
         let mut step = guess;
         for speed in &sorted {
             let steps = (speed / step).round();
-            if (speed - steps * step).abs() > ROUNDING + 0.02 * step {
+            if (speed - steps * step).abs() > LAW_PROBE.rounding + 0.02 * step {
                 return None;
             }
             step = speed / steps;

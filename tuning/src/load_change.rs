@@ -12,6 +12,7 @@ use crate::model::{Gains, PlantModel};
 use crate::report::{Report, Verdict};
 use crate::score::horizon_s;
 use crate::stability::StabilityMargins;
+use crate::thresholds::thresholds;
 use crate::trajectory::Trajectory;
 use serde::Serialize;
 
@@ -21,12 +22,19 @@ const INERTIAS: [f64; 9] = [0.25, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0];
 const FRICTIONS: [f64; 3] = [0.0, 2.0, 4.0];
 /// Steady loads against the step, as duties: the load step of all forecasts, and twice that.
 const LOADS_DUTY: [f64; 2] = [crate::score::LOAD_STEP_DUTY, 2.0 * crate::score::LOAD_STEP_DUTY];
-/// The highest sensitivity that counts as stood (Astrom and Murray, "Feedback Systems", 2nd edition, section 10.3: 1.2 to 2 are reasonable).
-pub const MOST_MS: f64 = 2.0;
-/// Limits of the inertia are looked for in so many steps of this ratio to either side, an eighth to 8 times, and then halved so often.
-const RATIO: f64 = std::f64::consts::SQRT_2;
-const STEPS: usize = 6;
-const HALVINGS: usize = 10;
+thresholds! {
+    /// Which change of inertia a loop counts as standing, and how it is looked for.
+    pub LOAD_CHANGE: Thresholds {
+        /// Highest maximum sensitivity (Ms) of a loop that stands a change (Astrom and Murray, "Feedback Systems", 2nd edition, section 10.3: 1.2 to 2 are reasonable).
+        most_ms: f64 = 2.0,
+        /// Ratio from one inertia to the next when the limits of the inertia are looked for.
+        ratio: f64 = std::f64::consts::SQRT_2,
+        /// Most such steps to either side: from an eighth to 8 times the inertia.
+        steps: usize = 6,
+        /// How often the last of these steps is then halved.
+        halvings: usize = 10,
+    }
+}
 
 /// A change of the load.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -113,7 +121,7 @@ pub struct InertiaRange {
 impl InertiaRange {
     /// Walks from the unchanged inertia to either side.
     fn where_it_holds(holds: impl Fn(f64) -> bool) -> Self {
-        Self { low: edge(&holds, RATIO.recip()), high: edge(&holds, RATIO) }
+        Self { low: edge(&holds, LOAD_CHANGE.ratio.recip()), high: edge(&holds, LOAD_CHANGE.ratio) }
     }
 
     fn contains(&self, inertia: f64) -> bool {
@@ -123,7 +131,7 @@ impl InertiaRange {
     /// In words.
     #[must_use]
     pub fn text(&self) -> String {
-        let most = RATIO.powi(STEPS as i32);
+        let most = LOAD_CHANGE.ratio.powi(LOAD_CHANGE.steps as i32);
         let times = |value: f64| {
             let digits = if value < 1.0 { 2 } else { 1 };
             format!("{value:.digits$}")
@@ -157,7 +165,7 @@ pub struct LoadChange {
     pub changed: Vec<Changed>,
     /// Where the loop stays stable.
     pub stable: InertiaRange,
-    /// Where its sensitivity stays up to [`MOST_MS`]; `None` where it is above that already.
+    /// Where its sensitivity stays up to `most_ms`; `None` where it is above that already.
     pub calm: Option<InertiaRange>,
     /// The largest steady load; `None` where the motor has nothing to spare.
     pub held: Option<HeldLoad>,
@@ -169,7 +177,7 @@ impl LoadChange {
     pub fn of<L: Law>(task: &Task<L>, gains: &Gains) -> Option<Self> {
         let stable = stable_range(task, gains)?;
         let ms = |inertia: f64| loop_with(task, inertia).margins(gains, task.qpps).ms;
-        let is_calm = |inertia: f64| stable.contains(inertia) && ms(inertia) <= MOST_MS;
+        let is_calm = |inertia: f64| stable.contains(inertia) && ms(inertia) <= LOAD_CHANGE.most_ms;
         let changed = changes(task, gains).map(|change| changed(task, gains, change, &stable)).collect();
         Some(Self {
             changed,
@@ -257,7 +265,7 @@ fn stable_range<L: Law>(task: &Task<L>, gains: &Gains) -> Option<InertiaRange> {
 /// The last multiple, going from 1 by `ratio`, at which something still holds.
 fn edge(holds: &impl Fn(f64) -> bool, ratio: f64) -> Option<f64> {
     let mut inside = 1.0;
-    let mut outside = (0..STEPS).find_map(|_| {
+    let mut outside = (0..LOAD_CHANGE.steps).find_map(|_| {
         let next = inside * ratio;
         let beyond = !holds(next);
         if !beyond {
@@ -265,7 +273,7 @@ fn edge(holds: &impl Fn(f64) -> bool, ratio: f64) -> Option<f64> {
         }
         beyond.then_some(next)
     })?;
-    for _ in 0..HALVINGS {
+    for _ in 0..LOAD_CHANGE.halvings {
         let middle = f64::sqrt(inside * outside);
         if holds(middle) { inside = middle } else { outside = middle }
     }
@@ -363,7 +371,7 @@ mod tests {
         let (mut calm, mut rough) = (slope, 2.0);
         for _ in 0..50 {
             let middle = 0.5 * (calm + rough);
-            if integral_ms(middle) < MOST_MS { calm = middle } else { rough = middle }
+            if integral_ms(middle) < LOAD_CHANGE.most_ms { calm = middle } else { rough = middle }
         }
         let low = found.calm.and_then(|calm| calm.low).expect("Ms is 2 before that");
         assert!((low / (slope / calm) - 1.0).abs() < 0.01, "{low}");

@@ -1,4 +1,5 @@
-//! How far the gain of a loop can be raised on the machine before the loop gets rough: its gain margin, asked of the machine itself. A springy shaft oscillates faster than polls can see and no model knows of it; the duty that is read back shows it anyhow.
+//! How far the gain of a loop can be raised on the machine before the loop gets rough: its gain margin, asked of the machine itself. A springy shaft oscillates faster
+//! than polls can see and no model knows of it; the duty that is read back shows it anyhow.
 
 use crate::cause::Cause;
 use crate::design::Task;
@@ -11,66 +12,78 @@ use crate::model::{Gains, Pid};
 use crate::oscillation::deviation;
 use crate::request::Excitation;
 use crate::setpoint::Setpoint;
+use crate::thresholds::thresholds;
 use crate::ticks::TickLoop;
 
-/// Gains tried, as multiples of the proposed ones, up to the margin that is wanted.
-const FACTORS: [f64; 7] = [1.2, 1.4, 1.6, 1.8, 2.0, 2.5, DERIVATIVE_FACTOR];
-/// The same where each of them takes a stop, since registers are written at rest only.
-const FACTORS_AT_REST: [f64; 3] = [1.4, 2.0, DERIVATIVE_FACTOR];
-/// The highest multiple that is wanted of a velocity loop that was not heard to oscillate.
-const MOST_WANTED: f64 = 2.0;
-/// Shares of the gains tried where they oscillate as they are.
-const SHARES: [f64; 4] = [0.7, 0.5, 0.35, 0.25];
-/// A duty that is still so large a part of what its share of the gains makes of noise is noise: rms figures of some fourteen polls spread by a fifth.
-const NOISE_SHARE: f64 = 0.8;
-/// The sensitivity up to which a model counts as calm.
-const CALM_MS: f64 = 2.8;
-/// The most that is asked of a loop that oscillates.
-const MOST_FACTOR: f64 = 2.5;
-/// The sensitivity that may really be where one was designed for: what lies beyond it is what the trial is to find.
-const MS_ALLOWED: f64 = 1.25;
-/// Setpoint of the trial and height of its steps, as shares of full speed.
-const SPEED: f64 = 0.30;
-const STEP: (f64, f64) = (0.02, 0.08);
-/// The least speed of a loop that starts from rest each time, share of full speed, and what is left at the least to accelerate with, duty.
-const LEAST_FROM_REST: f64 = 0.06;
-const LEAST_ACCELERATING: f64 = 0.05;
-/// The duty that a step asks for at once at the highest gain tried: as much as leaves the backlash of a gear, where a shaft does not oscillate.
-const STEP_DUTY: f64 = 0.3;
-/// How long a gain is tried, in lags of the loop, and the bounds, s.
-const LAGS: f64 = 14.0;
-const TRIED_S: (f64, f64) = (0.22, 0.40);
-/// The last share of that is listened to, and how many polls it has at the least.
-const HEARD: f64 = 0.65;
-const LEAST_POLLS: f64 = 14.0;
-/// The duty is too rough when it is so many times what was to be expected, and at least this.
-const TOO_ROUGH: f64 = 2.0;
-const LEAST_ROUGH: f64 = 0.012;
-/// What is left of a step may be so many times what the model leaves: it dies out as quickly to within a tenth or two.
-const RINGING: f64 = 1.3;
-
-/// Share of a travel that a stroke covers.
-pub(crate) const INSIDE_SHARE: f64 = 0.35;
-/// How far away the target of a loop on the position is then, as a share of it.
-const INSIDE_FAR: f64 = 0.45;
-/// Counts in a tick from which on a derivative alone gives a duty: with fewer it gives pulses, and polls see some of them.
-const LEAST_OF_DERIVATIVE: f64 = 2.0;
-/// The travel in which a loop on the position goes to and fro where the motor turns freely, s of full speed. At a steady speed a load without friction floats in its
-/// backlash: of 800 PD and PID runs on free axes (200 plants each of seeds 7 and 11) eight were tuned without a warning at a true Ms of 1.98 to 2.85, springy shafts
-/// whose oscillation a step between two speeds does not wake; by strokes it is three of two shafts, at 2.06 to 2.4.
-const FREE_TRAVEL_S: f64 = 4.0;
-/// The multiple that is wanted of a derivative alone: the proportional part takes phase where a shaft oscillates, and is not raised with it. Up to 2 six of 800
-/// runs are left above 1.8 without a warning, up to 2.5 three (MEASURED.md).
-const DERIVATIVE_FACTOR: f64 = 3.0;
-/// The highest sensitivity of gains that are given without a warning (Astrom and Murray, "Feedback Systems", 2nd edition, section 10.3: 1.2 to 2 are reasonable).
-pub(crate) const MOST_MS: f64 = 1.8;
-
-/// A duty that is beyond the bound so many times over needs no second look.
-const AT_ONCE: f64 = 4.0;
-/// Counts in a tick from which on a speed is laid between two whole numbers of them.
-const LEAST_PER_TICK: f64 = 6.0;
-/// Predicted noise from which on nothing can be heard beside it.
-const LOUDEST: f64 = 0.15;
+thresholds! {
+    /// The trials of raised gains: by how much, at which speeds, how long, and what counts as heard.
+    pub(crate) MARGIN: Thresholds {
+        /// The multiple that is wanted of a derivative alone: the proportional part takes phase where a shaft oscillates, and is not raised with it. With multiples up to
+        /// 2, six of 800 runs are left above an Ms of 1.8 without a warning, with multiples up to 2.5 three (MEASURED.md).
+        derivative_factor: f64 = 3.0,
+        /// Gains tried, as multiples of the proposed ones, up to the margin that is wanted.
+        factors: [f64; 7] = [1.2, 1.4, 1.6, 1.8, 2.0, 2.5, derivative_factor],
+        /// The same where each of them takes a stop, since registers are written at rest only.
+        factors_at_rest: [f64; 3] = [1.4, 2.0, derivative_factor],
+        /// The highest multiple that is wanted of a velocity loop that was not heard to oscillate.
+        most_wanted: f64 = 2.0,
+        /// Shares of the gains tried where they oscillate as they are.
+        shares: [f64; 4] = [0.7, 0.5, 0.35, 0.25],
+        /// A roughness that falls no lower than this, as a multiple of the share that is left of the gains, is noise and no oscillation: rms figures of some fourteen
+        /// polls spread by a fifth.
+        noise_share: f64 = 0.8,
+        /// Maximum sensitivity (Ms) below which a model counts as calm.
+        calm_ms: f64 = 2.8,
+        /// The most that is asked of a loop that oscillates, as a multiple of its gains.
+        most_factor: f64 = 2.5,
+        /// The sensitivity that may really be, as a multiple of the one that was designed for: what lies beyond it is what the trial is to find.
+        ms_allowed: f64 = 1.25,
+        /// Speed of the trial, as a share of full speed.
+        speed: f64 = 0.30,
+        /// Least and greatest distance of the speeds before and after a step from that of the trial, as shares of full speed.
+        step: (f64, f64) = (0.02, 0.08),
+        /// Least speed of a loop that starts from rest each time, as a share of full speed.
+        least_from_rest: f64 = 0.06,
+        /// Duty that is left at the least to accelerate with, as a share of full.
+        least_accelerating: f64 = 0.05,
+        /// Duty that half of a step asks for at once at the highest gain tried, as a share of full: as much as leaves the backlash of a gear, where a shaft does not
+        /// oscillate.
+        step_duty: f64 = 0.3,
+        /// How long a gain is tried, in lags of the loop.
+        lags: f64 = 14.0,
+        /// Shortest and longest time that a gain is tried by its lags, in seconds.
+        tried_s: (f64, f64) = (0.22, 0.40),
+        /// The last share of that time, which is listened to.
+        heard: f64 = 0.65,
+        /// Fewest polls in the part that is listened to.
+        least_polls: f64 = 14.0,
+        /// The duty is too rough when its noise is so many times what was to be expected.
+        too_rough: f64 = 2.0,
+        /// The duty is not too rough while its noise is below this, as a share of full duty.
+        least_rough: f64 = 0.012,
+        /// What may be left of a step, as a multiple of what the model leaves: it dies out as quickly to within a tenth or two.
+        ringing: f64 = 1.3,
+        /// Share of a travel that a stroke covers.
+        inside_share: f64 = 0.35,
+        /// How far away the target of a loop on the position is then, as a share of the travel.
+        inside_far: f64 = 0.45,
+        /// Counts in a tick from which on a derivative alone gives a duty: with fewer it gives pulses, and polls see some of them.
+        least_of_derivative: f64 = 2.0,
+        /// The travel in which a loop on the position goes to and fro where the motor turns freely: the way of so many seconds at full speed. At a steady speed a load
+        /// without friction floats in its backlash: of 800 PD and PID runs on free axes (200 plants each of seeds 7 and 11) eight were tuned without a warning at a true
+        /// Ms of 1.98 to 2.85, springy shafts whose oscillation a step between two speeds does not wake; by strokes it is three of two shafts, at 2.06 to 2.4.
+        free_travel_s: f64 = 4.0,
+        /// Highest maximum sensitivity (Ms) of gains that are given without a warning (Astrom and Murray, "Feedback Systems", 2nd edition, section 10.3: 1.2 to 2 are
+        /// reasonable).
+        most_ms: f64 = 1.8,
+        /// Multiple of the bound beyond which the noise of a duty needs no second look.
+        at_once: f64 = 4.0,
+        /// Counts in a tick from which on a speed is laid between two whole numbers of them.
+        least_per_tick: f64 = 6.0,
+        /// Predicted noise of the duty, as a share of full, above which nothing can be heard beside it.
+        loudest: f64 = 0.15,
+    }
+}
 
 /// What a trial of raised gains found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,18 +104,18 @@ pub(crate) fn may_be_short<L: Law>(task: &Task<L>, gains: &Gains, is_doubtful: b
     let is_longer = longest.total_s(tick_s) > task.worst_lag.total_s(tick_s);
     let lag = if is_doubtful && is_longer { longest } else { task.worst_lag };
     let plant = LoopPlant::new(DiscretePlant::of(&task.plant, tick_s), &task.law, lag);
-    plant.spectral_radius(gains, task.qpps) >= 1.0 || plant.margins(gains, task.qpps).ms > MOST_MS
+    plant.spectral_radius(gains, task.qpps) >= 1.0 || plant.margins(gains, task.qpps).ms > MARGIN.most_ms
 }
 
 /// The multiple of its gain up to which a loop with the sensitivity that is allowed stays stable.
 fn wanted_factor(ms: f64) -> f64 {
-    let allowed = MS_ALLOWED * ms;
-    (allowed / (allowed - 1.0)).min(MOST_WANTED)
+    let allowed = MARGIN.ms_allowed * ms;
+    (allowed / (allowed - 1.0)).min(MARGIN.most_wanted)
 }
 
 /// The multiple that a loop with the sensitivity that was designed for has, for one that was seen to oscillate below the other.
 fn full_factor(ms: f64) -> f64 {
-    (ms / (ms - 1.0)).min(MOST_FACTOR)
+    (ms / (ms - 1.0)).min(MARGIN.most_factor)
 }
 
 /// The velocity loop of gains. A loop on the position that acts on the duty directly is one too: its derivative is a gain of the speed and
@@ -158,7 +171,7 @@ impl<'t, L: Law> Raised<'t, L> {
         plant: &LoopPlant,
     ) -> Result<Self, Cause> {
         let is_free = excitation == Excitation::Free;
-        let is_fine = SPEED * task.qpps * task.law.tick_s() > LEAST_OF_DERIVATIVE;
+        let is_fine = MARGIN.speed * task.qpps * task.law.tick_s() > MARGIN.least_of_derivative;
         let at_rest = guard.facts.writes_at_rest;
         let part = match gains.velocity == Pid::default() {
             true if at_rest => Part::DerivativeBySpeeds,
@@ -173,30 +186,40 @@ impl<'t, L: Law> Raised<'t, L> {
         let tick_s = task.law.tick_s();
         let travel = match excitation {
             Excitation::Window(width) => Some(guard.room_counts().unwrap_or(width).min(width)),
-            Excitation::Free => goes_to_and_fro.then_some(FREE_TRAVEL_S * task.qpps),
+            Excitation::Free => goes_to_and_fro.then_some(MARGIN.free_travel_s * task.qpps),
         };
         let inner = if part == Part::DerivativeByPositions { *gains } else { velocity_loop_of(gains) };
-        let middle = between_counts(SPEED * task.qpps, tick_s);
+        let middle = between_counts(MARGIN.speed * task.qpps, tick_s);
         let steps =
             Self { task, inner, part, speeds: (middle, middle), about: None, far: 0.0, side: -1.0, tried_s };
         if let Some(room) = travel {
-            let most = if at_rest { fastest_from_rest(tried_s, task) } else { SPEED * task.qpps };
-            let speed = between_counts((INSIDE_SHARE * room / tried_s).min(most), tick_s);
-            let tried_s = if at_rest { tried_s.max(turning_s(speed, task) / (1.0 - HEARD)) } else { tried_s };
+            let most = if at_rest { fastest_from_rest(tried_s, task) } else { MARGIN.speed * task.qpps };
+            let speed = between_counts((MARGIN.inside_share * room / tried_s).min(most), tick_s);
+            let tried_s =
+                if at_rest { tried_s.max(turning_s(speed, task) / (1.0 - MARGIN.heard)) } else { tried_s };
             let about = guard.points.last().map(|point| point.counts);
-            return Ok(Self { speeds: (-speed, speed), about, far: INSIDE_FAR * room, tried_s, ..steps });
+            return Ok(Self {
+                speeds: (-speed, speed),
+                about,
+                far: MARGIN.inside_far * room,
+                tried_s,
+                ..steps
+            });
         }
         let wanted = steps.wanted(plant);
         let gain = inner.velocity.p.max(inner.position.map_or(0.0, |position| position.d));
-        let step = (STEP_DUTY / (wanted * gain).max(1e-6)).clamp(STEP.0, STEP.1);
-        let speed = |side: f64| between_counts((SPEED + side * step) * task.qpps, tick_s);
+        let step = (MARGIN.step_duty / (wanted * gain).max(1e-6)).clamp(MARGIN.step.0, MARGIN.step.1);
+        let speed = |side: f64| between_counts((MARGIN.speed + side * step) * task.qpps, tick_s);
         Ok(Self { speeds: (speed(-1.0), speed(1.0)), ..steps })
     }
 
     /// The multiple that is wanted, as far as the model itself stays calm under it.
     fn wanted(&self, plant: &LoopPlant) -> f64 {
-        let wanted =
-            if self.part != Part::Whole { DERIVATIVE_FACTOR } else { wanted_factor(self.task.goal.ms) };
+        let wanted = if self.part != Part::Whole {
+            MARGIN.derivative_factor
+        } else {
+            wanted_factor(self.task.goal.ms)
+        };
         wanted.min(self.highest_calm(plant))
     }
 
@@ -205,14 +228,14 @@ impl<'t, L: Law> Raised<'t, L> {
         let is_calm = |factor: &f64| {
             let gains = self.gains(*factor);
             plant.spectral_radius(&gains, self.task.qpps) < 1.0
-                && plant.margins(&gains, self.task.qpps).ms < CALM_MS
+                && plant.margins(&gains, self.task.qpps).ms < MARGIN.calm_ms
         };
-        FACTORS.into_iter().take_while(is_calm).fold(1.0, f64::max)
+        MARGIN.factors.into_iter().take_while(is_calm).fold(1.0, f64::max)
     }
 
     /// The multiples that are tried.
     fn factors(&self) -> &'static [f64] {
-        if self.task.law.facts().writes_at_rest { &FACTORS_AT_REST } else { &FACTORS }
+        if self.task.law.facts().writes_at_rest { &MARGIN.factors_at_rest } else { &MARGIN.factors }
     }
 
     /// The gains of a multiple.
@@ -264,7 +287,7 @@ impl<'t, L: Law> Raised<'t, L> {
             self.side = -self.side;
         }
         self.go(guard)?;
-        let from_s = guard.now_s() + (1.0 - HEARD) * self.tried_s;
+        let from_s = guard.now_s() + (1.0 - MARGIN.heard) * self.tried_s;
         guard.poll_for(self.tried_s, true)?;
         let duties: Vec<(f64, f64)> =
             guard.points.iter().filter_map(|point| point.duty).filter(|duty| duty.0 >= from_s).collect();
@@ -283,7 +306,9 @@ pub(crate) fn headroom<L: Law>(
     let law = &task.law;
     let plant = LoopPlant::new(DiscretePlant::of(&task.plant, law.tick_s()), law, task.lag);
     let lag_s = task.lag.total_s(law.tick_s()) + 2.0 * law.tick_s();
-    let tried_s = (LAGS * lag_s).clamp(TRIED_S.0, TRIED_S.1).max(LEAST_POLLS * guard.options.poll_s / HEARD);
+    let tried_s = (MARGIN.lags * lag_s)
+        .clamp(MARGIN.tried_s.0, MARGIN.tried_s.1)
+        .max(MARGIN.least_polls * guard.options.poll_s / MARGIN.heard);
     let mut raised = Raised::new(guard, task, gains, (excitation, tried_s), &plant)?;
     let tried_s = raised.tried_s;
     let wanted = raised.wanted(&plant);
@@ -297,8 +322,9 @@ pub(crate) fn headroom<L: Law>(
     let predicted = |raised: &Raised<'_, L>, factor: f64| {
         louder * plant.margins(&raised.gains(factor), task.qpps).noise_duty
     };
-    let bound =
-        |raised: &Raised<'_, L>, factor: f64| (TOO_ROUGH * predicted(raised, factor)).max(LEAST_ROUGH);
+    let bound = |raised: &Raised<'_, L>, factor: f64| {
+        (MARGIN.too_rough * predicted(raised, factor)).max(MARGIN.least_rough)
+    };
     let mut is_doubtful = false;
     let mut heard_above: Option<f64> = None;
     let mut quiet = 0.0;
@@ -307,7 +333,7 @@ pub(crate) fn headroom<L: Law>(
             break;
         }
         if factor > 1.0 {
-            if predicted(&raised, factor) > LOUDEST {
+            if predicted(&raised, factor) > MARGIN.loudest {
                 // The rounding of a coarse encoder alone makes such a noise.
                 is_doubtful = quiet < wanted_factor(task.goal.ms);
                 quiet = wanted;
@@ -319,8 +345,8 @@ pub(crate) fn headroom<L: Law>(
         let measured = raised.activity(guard, true)?;
         // Looked at twice: what oscillates goes on, unless it is so strong that it had better stop at once. After a step something may still be dying out.
         let after_step =
-            (measured > bound_here).then(|| bound_here.hypot(RINGING * ringing(&raised, factor)));
-        let again = after_step.is_some_and(|most| measured <= AT_ONCE * most);
+            (measured > bound_here).then(|| bound_here.hypot(MARGIN.ringing * ringing(&raised, factor)));
+        let again = after_step.is_some_and(|most| measured <= MARGIN.at_once * most);
         let rough = if again { raised.activity(guard, false)? } else { measured };
         // Every stroke is a step.
         let bound_again = if raised.about.is_some() { after_step.unwrap_or(bound_here) } else { bound_here };
@@ -330,7 +356,8 @@ pub(crate) fn headroom<L: Law>(
             heard_above.get_or_insert(quiet.max(1.0));
         }
         if rough > bound_again {
-            let full = if raised.part == Part::Whole { full_factor(task.goal.ms) } else { DERIVATIVE_FACTOR };
+            let full =
+                if raised.part == Part::Whole { full_factor(task.goal.ms) } else { MARGIN.derivative_factor };
             let wanted = full.min(raised.highest_calm(&plant));
             if quiet == 0.0 {
                 match lowered_until_quiet(guard, &mut raised, bound, rough)? {
@@ -359,7 +386,7 @@ fn quiet_for_longer<L: Law>(
     highest: f64,
 ) -> Result<f64, Cause> {
     let is_quiet = |raised: &Raised<'_, L>, factor: f64, measured: f64| {
-        measured <= bound(raised, factor).hypot(RINGING * ringing(raised, factor))
+        measured <= bound(raised, factor).hypot(MARGIN.ringing * ringing(raised, factor))
     };
     let measured = raised.activity(guard, false)?;
     if is_quiet(raised, highest, measured) {
@@ -381,7 +408,7 @@ fn quiet_for_longer<L: Law>(
 fn has_room<L: Law>(guard: &ExperimentGuard<'_, L>, task: &Task<L>) -> bool {
     let here = guard.points.last().map_or(0.0, |point| point.counts) + guard.origin_counts() as f64;
     let limits = guard.proposed_travel(task.qpps).or_else(|| L::position_limits(&guard.setup.held));
-    let most = FREE_TRAVEL_S * task.qpps;
+    let most = MARGIN.free_travel_s * task.qpps;
     limits.is_none_or(|(low, high)| here - most > low as f64 && here + most < high as f64)
 }
 
@@ -398,7 +425,7 @@ fn ringing<L: Law>(raised: &Raised<'_, L>, factor: f64) -> f64 {
         Setpoint::Speed(raised.speeds.1)
     };
     let duties: Vec<(f64, f64)> = (0..ticks).map(|n| (n as f64 * tick_s, twin.tick(to, 0.0))).collect();
-    deviation(&duties[((1.0 - HEARD) * ticks as f64) as usize..])
+    deviation(&duties[((1.0 - MARGIN.heard) * ticks as f64) as usize..])
 }
 
 /// The highest share of gains that oscillate as they are at which they no longer do. `None` where no share is quiet and the duty falls with the gains
@@ -409,9 +436,9 @@ fn lowered_until_quiet<L: Law>(
     bound: impl Fn(&Raised<'_, L>, f64) -> f64,
     rough: f64,
 ) -> Result<Option<f64>, Cause> {
-    let lowest = SHARES[SHARES.len() - 1];
+    let lowest = MARGIN.shares[MARGIN.shares.len() - 1];
     let mut heard = rough;
-    for share in SHARES {
+    for share in MARGIN.shares {
         raised.write(guard, share)?;
         // The first stay lets what went on before die out.
         raised.activity(guard, true)?;
@@ -420,15 +447,15 @@ fn lowered_until_quiet<L: Law>(
             return Ok(Some(share));
         }
     }
-    let falls_with_gains = heard >= NOISE_SHARE * lowest * rough;
+    let falls_with_gains = heard >= MARGIN.noise_share * lowest * rough;
     Ok((!falls_with_gains).then_some(lowest))
 }
 
 /// The speed of a loop that starts from rest each time, counts/s: it has to be there, or to have turned about, when it is listened to. A slow motor is given more time
 /// rather than less speed, at which a motor that opened would hardly be missed.
 fn fastest_from_rest<L: Law>(tried_s: f64, task: &Task<L>) -> f64 {
-    let reached = 0.5 * accelerating(task) * (1.0 - HEARD) * tried_s / task.plant.tau_s;
-    reached.clamp(LEAST_FROM_REST * task.qpps, SPEED * task.qpps)
+    let reached = 0.5 * accelerating(task) * (1.0 - MARGIN.heard) * tried_s / task.plant.tau_s;
+    reached.clamp(MARGIN.least_from_rest * task.qpps, MARGIN.speed * task.qpps)
 }
 
 /// How long the motor takes to turn about at a speed, s.
@@ -440,12 +467,13 @@ fn turning_s<L: Law>(speed: f64, task: &Task<L>) -> f64 {
 fn accelerating<L: Law>(task: &Task<L>) -> f64 {
     let plant = &task.plant;
     let limit = plant.drive_limit.map_or(1.0, |limit| limit.min(1.0));
-    (limit - plant.coulomb_duty - plant.load_duty.abs()).max(LEAST_ACCELERATING) * plant.gain_counts_per_s
+    (limit - plant.coulomb_duty - plant.load_duty.abs()).max(MARGIN.least_accelerating)
+        * plant.gain_counts_per_s
 }
 
 /// A speed near this one at which each tick counts a half more than a whole number: the difference of two ticks is never the same, and
 /// a loop that oscillates by less than a count shows it. At whole numbers it could stand still in the controller's eyes.
 fn between_counts(speed: f64, tick_s: f64) -> f64 {
     let per_tick = speed * tick_s;
-    if per_tick > LEAST_PER_TICK { (per_tick.floor() + 0.5) / tick_s } else { speed }
+    if per_tick > MARGIN.least_per_tick { (per_tick.floor() + 0.5) / tick_s } else { speed }
 }

@@ -1,11 +1,17 @@
 //! The model of an axis that identification fills and design uses.
 
 pub use crate::gains::{Gains, Pid};
+use crate::thresholds::thresholds;
 use serde::{Deserialize, Serialize};
 
-/// Share of the damping that is viscous friction, not back-EMF. Only a current limit tells them apart; small in every motor, so one
-/// middle value does for all.
-const VISCOUS_SHARE: f64 = 0.025;
+thresholds! {
+    /// What the model of a motor takes for granted.
+    MODEL: Thresholds {
+        /// Share of the damping that is viscous friction, not back-EMF. Only a current limit tells them apart; small in every motor, so one
+        /// middle value does for all.
+        viscous_share: f64 = 0.025,
+    }
+}
 
 /// A first-order motor with dry friction.
 ///
@@ -79,7 +85,7 @@ impl PlantModel {
             if motion.speed == 0.0 && net.abs() <= self.coulomb_duty {
                 return;
             }
-            let eaten = VISCOUS_SHARE * motion.speed / self.gain_counts_per_s;
+            let eaten = MODEL.viscous_share * motion.speed / self.gain_counts_per_s;
             let push = duty * (1.0 - sag) - motion.speed / gain + eaten;
             if let Some(limit) = self.push_limit(duty, motion.speed)
                 && push.abs() > limit
@@ -135,7 +141,7 @@ impl PlantModel {
     pub fn spare_load_duty(&self, speed: f64) -> f64 {
         let share = speed.abs() / self.gain_counts_per_s;
         let push = (1.0 - self.sag) * (1.0 - share);
-        let most = self.drive_limit.map_or(push, |limit| push.min(limit - VISCOUS_SHARE * share));
+        let most = self.drive_limit.map_or(push, |limit| push.min(limit - MODEL.viscous_share * share));
         most - self.coulomb_duty - self.load_duty.abs()
     }
 

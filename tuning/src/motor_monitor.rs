@@ -6,54 +6,65 @@
 
 use crate::cause::Cause;
 use crate::closed_loop_monitor::{Before, ClosedLoopMonitor};
-use crate::current_silence::{CurrentSilence, NO_CURRENT_AMPS, NOISES, OPEN_S};
+use crate::current_silence::{CurrentSilence, SILENCE};
 use crate::model::PlantModel;
-use crate::open_loop_record::DUTY_SLEW_PER_S;
+use crate::open_loop_record::OPEN_LOOP;
 use crate::poll::Point;
+use crate::thresholds::thresholds;
 use std::collections::VecDeque;
 
-/// Stretches that are looked at, s.
-const STRETCHES_S: [f64; 4] = [0.045, 0.08, 0.12, 0.17];
-/// Longest time looked back at, s.
-const MEMORY_S: f64 = 0.8;
-/// Time over which the speed before a stretch is taken, s.
-const SPEED_S: f64 = 0.03;
-/// Step of the bounds, s.
-const STEP_S: f64 = 0.004;
-/// Least share of the gain seen so far that is expected.
-const LEAST_GAIN: f64 = 0.75;
-/// Counts that a stretch may be short of its bound, and share of the speed before it.
-const MARGIN_COUNTS: f64 = 5.0;
-const MARGIN_SPEED: f64 = 0.3;
-/// What a motor keeps at the least of its speed while its duty stays.
-const KEPT_SPEED: f64 = 0.5;
-/// A motor that has started once starts again within this, at a clearly higher duty, s: at the least and at the most, and how many times
-/// longer than the first time. A slow one that is turned round passes through rest with hardly a count for as long.
-const START_S: (f64, f64) = (0.13, 0.22);
-const STARTS: f64 = 1.5;
-const START_COUNTS: f64 = 2.0;
-const CLEARLY_HIGHER: f64 = 0.1;
-/// After a duty was given, its current has settled, s.
-const SETTLED_S: f64 = 0.3;
-/// Share of the friction that a duty has to be beyond the motor's voltage at the least for a current to be missed: the lower bound of the closed-loop monitor.
-const LEAST_PUSH: f64 = 0.5;
-/// A duty that lies below it by so much brakes with a current: beyond a gain that is 4 % off and half of a usual friction.
-const BRAKING: f64 = 0.05;
-/// A push that has begun draws its current after this, s.
-const PUSHED_S: f64 = 0.02;
-/// Duty readings of a loop lie this much beside the truth between two polls.
-const LOOP_DUTY: f64 = 0.14;
-/// Share of the speed at full duty that a loop may be beside what its duty readings say.
-const LOOP_MARGIN: f64 = 0.04;
-/// A loop that was given a new setpoint does what no poll sees for this long, s.
-const UNSEEN_SETPOINT_S: f64 = 0.07;
-/// Between which multiples of a time constant that was found the true one lies: a load behind a spring makes the motor alone quicker.
-const TAU_SPREAD: (f64, f64) = (0.3, 1.6);
-/// Share of the speed at full duty that a load may sway with while the motor is off, and below which cogs make a turning one uneven.
-const SWAYING: f64 = 0.08;
-/// From a poll to the command that it leads to, s; and the least share of a stopping distance that the motor's own slowing takes.
-const COMMAND_S: f64 = 0.012;
-const LEAST_TURN: f64 = 0.25;
+thresholds! {
+    /// What a driven motor may do before it counts as stuck, reversed or lost.
+    MONITOR: Thresholds {
+        /// Lengths of the stretches that are looked at, in seconds.
+        stretches_s: [f64; 4] = [0.045, 0.08, 0.12, 0.17],
+        /// Longest time looked back at, in seconds.
+        memory_s: f64 = 0.8,
+        /// Time over which the speed before a stretch is taken, in seconds.
+        speed_s: f64 = 0.03,
+        /// Step in which the bounds are computed along a stretch, in seconds.
+        step_s: f64 = 0.004,
+        /// Least gain that is expected, as a share of the gain seen so far.
+        least_gain: f64 = 0.75,
+        /// Counts that a stretch may be short of its bound.
+        margin_counts: f64 = 5.0,
+        /// Way that it may be short on top, as a share of what the speed before it would make.
+        margin_speed: f64 = 0.3,
+        /// Share of its speed that a motor keeps at the least while its duty stays.
+        kept_speed: f64 = 0.5,
+        /// Shortest and longest time within which a motor that has started once starts again at a clearly higher duty, in seconds. A slow one that is turned round passes
+        /// through rest with hardly a count for as long.
+        start_s: (f64, f64) = (0.13, 0.22),
+        /// A motor that has moved by more than so many counts has started.
+        start_counts: f64 = 2.0,
+        /// How far above the starting duty a duty is clearly higher, as a share of full.
+        clearly_higher: f64 = 0.1,
+        /// How long after a duty was given its current has settled, in seconds.
+        settled_s: f64 = 0.3,
+        /// How far beyond the motor's voltage a duty has to be for a current to be missed, as a share of the friction: the lower bound of the closed-loop monitor.
+        least_push: f64 = 0.5,
+        /// How far below the motor's voltage a duty has to be to brake with a current, as a share of full: beyond a gain that is 4 % off and half of a usual friction.
+        braking: f64 = 0.05,
+        /// How long after a push began it draws its current, in seconds.
+        pushed_s: f64 = 0.02,
+        /// How far readings of a loop's duty are from the truth between two polls, as a share of full duty.
+        loop_duty: f64 = 0.14,
+        /// How far the speed of a loop may be from what its duty readings say, as a share of the speed at full duty.
+        loop_margin: f64 = 0.04,
+        /// How long a loop that was given a new setpoint does what no poll sees, in seconds.
+        unseen_setpoint_s: f64 = 0.07,
+        /// Multiples of a time constant that was found between which the true one lies: a load behind a spring makes the motor alone quicker.
+        tau_spread: (f64, f64) = (0.3, 1.6),
+        /// Speed, as a share of that at full duty, below which a load may sway while the motor is off, and below which cogs make a turning motor uneven.
+        swaying: f64 = 0.08,
+        /// Time from a poll to the command that it leads to, in seconds.
+        command_s: f64 = 0.012,
+        /// Least share of a stopping distance that the motor's own slowing takes.
+        least_turn: f64 = 0.25,
+        /// Time for a further start, as a multiple of what the first one took, within the bounds of `start_s`.
+        starts: f64 = 1.5,
+    }
+}
 
 /// The monitor of one motor.
 #[derive(Clone, Debug, Default)]
@@ -136,7 +147,7 @@ impl MotorMonitor {
             self.first_s = t;
         }
         self.since_s = t;
-        while self.duties.get(1).is_some_and(|next| t - next.0 > MEMORY_S) {
+        while self.duties.get(1).is_some_and(|next| t - next.0 > MONITOR.memory_s) {
             self.duties.pop_front();
         }
     }
@@ -153,7 +164,7 @@ impl MotorMonitor {
     pub fn know(&mut self, model: &PlantModel) {
         self.load_duty = model.load_duty;
         self.gain = model.gain_counts_per_s * (1.0 - model.coulomb_duty);
-        self.tau_bounds_s = Some((TAU_SPREAD.0 * model.tau_s, TAU_SPREAD.1 * model.tau_s));
+        self.tau_bounds_s = Some((MONITOR.tau_spread.0 * model.tau_s, MONITOR.tau_spread.1 * model.tau_s));
         // A limit that never acted in the identification may act in a trial.
         let drive_limit = model.drive_limit.or(self.drive_limit);
         self.closed_loop =
@@ -184,8 +195,8 @@ impl MotorMonitor {
             return;
         }
         // The command comes late, then the duty takes its time to turn its sign and to come up.
-        let acts_s = COMMAND_S + 1.5 * duty / self.slew_per_s();
-        let found_s = (counts - acts_s * speed).max(LEAST_TURN * counts) / per_tau;
+        let acts_s = MONITOR.command_s + 1.5 * duty / self.slew_per_s();
+        let found_s = (counts - acts_s * speed).max(MONITOR.least_turn * counts) / per_tau;
         self.turning_tau_s = Some(self.turning_tau_s.map_or(found_s, |known| 0.5 * (known + found_s)));
     }
 
@@ -225,7 +236,7 @@ impl MotorMonitor {
     /// Takes the duty that a poll read, where its counts came too late to say anything.
     pub(crate) fn read_duty(&mut self, point: &Point) {
         self.readings.extend(point.duty);
-        while self.readings.front().is_some_and(|old| point.t - old.0 > MEMORY_S) {
+        while self.readings.front().is_some_and(|old| point.t - old.0 > MONITOR.memory_s) {
             self.readings.pop_front();
         }
     }
@@ -234,7 +245,7 @@ impl MotorMonitor {
     pub fn see(&mut self, point: &Point) -> Result<(), Cause> {
         self.read_duty(point);
         self.recent.push_back(*point);
-        while self.recent.front().is_some_and(|old| point.t - old.t > MEMORY_S) {
+        while self.recent.front().is_some_and(|old| point.t - old.t > MONITOR.memory_s) {
             self.recent.pop_front();
         }
         if self.start_duty == 0.0 {
@@ -249,7 +260,7 @@ impl MotorMonitor {
             let agrees = closed_loop.agrees(&self.recent, &self.readings);
             return if agrees { Ok(()) } else { Err(Cause::Stalled) };
         }
-        for seconds in STRETCHES_S {
+        for seconds in MONITOR.stretches_s {
             if let Some(stretch) = self.stretch(seconds) {
                 self.check_stretch(&stretch)?;
             }
@@ -285,8 +296,10 @@ impl MotorMonitor {
         let before = readings().rev().find(|duty| duty.0 <= t);
         let after = readings().find(|duty| duty.0 > t);
         match (before, after) {
-            (Some(a), Some(b)) => (a.1.min(b.1) - LOOP_DUTY, a.1.max(b.1) + LOOP_DUTY),
-            (Some(a), None) | (None, Some(a)) => (a.1 - 2.0 * LOOP_DUTY, a.1 + 2.0 * LOOP_DUTY),
+            (Some(a), Some(b)) => (a.1.min(b.1) - MONITOR.loop_duty, a.1.max(b.1) + MONITOR.loop_duty),
+            (Some(a), None) | (None, Some(a)) => {
+                (a.1 - 2.0 * MONITOR.loop_duty, a.1 + 2.0 * MONITOR.loop_duty)
+            }
             (None, None) => (-1.0, 1.0),
         }
     }
@@ -295,7 +308,7 @@ impl MotorMonitor {
     fn stretch(&self, seconds: f64) -> Option<Stretch> {
         let to = *self.recent.back()?;
         let from = self.recent.iter().rev().find(|old| to.t - old.t >= seconds)?;
-        let earlier = self.recent.iter().rev().find(|old| from.t - old.t >= SPEED_S)?;
+        let earlier = self.recent.iter().rev().find(|old| from.t - old.t >= MONITOR.speed_s)?;
         let speed_before = (from.counts - earlier.counts) / (from.t - earlier.t);
         Some(Stretch { from: *from, to, speed_before })
     }
@@ -303,14 +316,14 @@ impl MotorMonitor {
     /// Compares a stretch with what the motor can have done.
     fn check_stretch(&self, stretch: &Stretch) -> Result<(), Cause> {
         let Stretch { from, to, speed_before } = stretch;
-        let unclear_s = self.changed_s + if self.in_loop { UNSEEN_SETPOINT_S } else { 0.0 };
-        if unclear_s > from.t - SPEED_S {
+        let unclear_s = self.changed_s + if self.in_loop { MONITOR.unseen_setpoint_s } else { 0.0 };
+        if unclear_s > from.t - MONITOR.speed_s {
             return Ok(());
         }
         let span = to.t - from.t;
         let moved = to.counts - from.counts;
-        let unseen = if self.in_loop { LOOP_MARGIN * self.gain * span } else { 0.0 };
-        let margin = MARGIN_COUNTS + MARGIN_SPEED * speed_before.abs() * span + unseen;
+        let unseen = if self.in_loop { MONITOR.loop_margin * self.gain * span } else { 0.0 };
+        let margin = MONITOR.margin_counts + MONITOR.margin_speed * speed_before.abs() * span + unseen;
         if self.sways(stretch) {
             return Ok(());
         }
@@ -318,9 +331,9 @@ impl MotorMonitor {
         // No duty has no direction, whatever the sign of its nought.
         let direction = if duty == 0.0 { 0.0 } else { duty.signum() };
         // A motor that hardly turns is held up and let go by each of its cogs.
-        let crawls = self.tau_bounds_s.is_some() && speed_before.abs() < SWAYING * self.gain;
+        let crawls = self.tau_bounds_s.is_some() && speed_before.abs() < MONITOR.swaying * self.gain;
         if !crawls && self.keeps_its_speed(stretch, direction) {
-            let least = KEPT_SPEED * speed_before.abs() * span - MARGIN_COUNTS;
+            let least = MONITOR.kept_speed * speed_before.abs() * span - MONITOR.margin_counts;
             if least > 0.0 && moved * direction < least {
                 return Err(Cause::Stalled);
             }
@@ -340,21 +353,21 @@ impl MotorMonitor {
     /// Whether the motor is off and all that is counted is slow: a load sways in the backlash of its gear.
     fn sways(&self, stretch: &Stretch) -> bool {
         let Stretch { from, to, speed_before } = stretch;
-        let begin = from.t - SPEED_S;
+        let begin = from.t - MONITOR.speed_s;
         let given = || self.duties.iter().filter(|given| given.0 >= begin);
         let off = !self.in_loop
             && self.loop_until_s < begin
             && self.duty_at(begin) == 0.0
             && given().all(|given| given.1 == 0.0);
-        let slow = SWAYING * self.gain;
+        let slow = MONITOR.swaying * self.gain;
         off && speed_before.abs() < slow && (to.counts - from.counts).abs() < slow * (to.t - from.t)
     }
 
     /// Whether nothing slows the motor down: its duty has stayed, and it was on its way there.
     fn keeps_its_speed(&self, stretch: &Stretch, direction: f64) -> bool {
         let settled_s = self.tau_bounds_s.map_or(0.0, |tau| 3.0 * tau.1);
-        let steady = stretch.from.t - SPEED_S > self.since_s + 0.11 + settled_s;
-        let rising = self.tau_bounds_s.is_none() && stretch.from.t - SPEED_S > self.since_s + 0.02;
+        let steady = stretch.from.t - MONITOR.speed_s > self.since_s + 0.11 + settled_s;
+        let rising = self.tau_bounds_s.is_none() && stretch.from.t - MONITOR.speed_s > self.since_s + 0.02;
         !self.in_loop && (steady || rising) && stretch.speed_before * direction > 0.0
     }
 
@@ -363,10 +376,10 @@ impl MotorMonitor {
     fn least_distance(&self, stretch: &Stretch, direction: f64, tau: (f64, f64)) -> f64 {
         let mut speed = stretch.speed_before * direction;
         let mut distance = 0.0;
-        let mut t = stretch.from.t - 0.5 * SPEED_S;
+        let mut t = stretch.from.t - 0.5 * MONITOR.speed_s;
         // The speed before was that of the middle of its own time.
         while t < stretch.to.t {
-            let step = STEP_S.min(stretch.to.t - t);
+            let step = MONITOR.step_s.min(stretch.to.t - t);
             let range = self.duty_range(t + 0.5 * step);
             let duty = if direction > 0.0 { range.0 - self.load_duty } else { self.load_duty - range.1 };
             let next = self.least_speed(speed, duty, step, tau);
@@ -381,7 +394,7 @@ impl MotorMonitor {
 
     /// The lowest speed after a step.
     fn least_speed(&self, speed: f64, duty: f64, step: f64, tau: (f64, f64)) -> f64 {
-        let gain = if duty > 0.0 { LEAST_GAIN * self.gain } else { self.gain / LEAST_GAIN };
+        let gain = if duty > 0.0 { MONITOR.least_gain * self.gain } else { self.gain / MONITOR.least_gain };
         let mut drive = gain * duty - speed;
         if let Some(limit) = self.drive_limit {
             let most = self.gain * limit;
@@ -404,7 +417,7 @@ impl MotorMonitor {
             return;
         }
         let from = self.recent.iter().rev().find(|old| old.t <= self.since_s);
-        if from.is_some_and(|from| (point.counts - from.counts).abs() > START_COUNTS) {
+        if from.is_some_and(|from| (point.counts - from.counts).abs() > MONITOR.start_counts) {
             self.start_took_s = Some(point.t - self.since_s);
         }
     }
@@ -412,10 +425,12 @@ impl MotorMonitor {
     /// From rest, a duty clearly above the one that it started with moves it soon.
     fn check_start(&self, point: &Point) -> Result<(), Cause> {
         let duty = self.duty_at(point.t).abs();
-        if self.in_loop || duty < self.start_duty + CLEARLY_HIGHER || self.tau_bounds_s.is_some() {
+        if self.in_loop || duty < self.start_duty + MONITOR.clearly_higher || self.tau_bounds_s.is_some() {
             return Ok(());
         }
-        let start_s = self.start_took_s.map_or(START_S.0, |took| (STARTS * took).clamp(START_S.0, START_S.1));
+        let start_s = self.start_took_s.map_or(MONITOR.start_s.0, |took| {
+            (MONITOR.starts * took).clamp(MONITOR.start_s.0, MONITOR.start_s.1)
+        });
         if point.t - self.since_s < start_s + 0.05 {
             return Ok(());
         }
@@ -430,7 +445,7 @@ impl MotorMonitor {
 
     /// Remembers the highest speed over duty.
     fn learn(&mut self) {
-        let Some(stretch) = self.stretch(STRETCHES_S[0]) else { return };
+        let Some(stretch) = self.stretch(MONITOR.stretches_s[0]) else { return };
         let duty = self.duty_at(stretch.to.t);
         if self.in_loop
             || !self.rising
@@ -470,9 +485,9 @@ impl MotorMonitor {
             return Ok(());
         }
         let Some(amps) = point.amps else { return Ok(()) };
-        let is_settled = point.t - self.since_s > SETTLED_S;
+        let is_settled = point.t - self.since_s > MONITOR.settled_s;
         self.current.see(point.t, amps.abs(), is_settled, self.no_current_amps());
-        let since_s = point.t - OPEN_S;
+        let since_s = point.t - SILENCE.open_s;
         let is_open = self.draws_clearly()
             && self.current.is_long(self.noise_amps)
             && self.has_to_draw(since_s)
@@ -495,13 +510,16 @@ impl MotorMonitor {
         // A duty so far from the voltage has no more than the current that counts as none.
         let none = self.stall_amps.map_or(0.0, |stall| self.no_current_amps() / stall);
         let (gain, driving, braking) = match known {
-            Some(model) => {
-                (model.gain_counts_per_s, none.max(LEAST_PUSH * model.coulomb_duty), none.max(BRAKING))
-            }
+            Some(model) => (
+                model.gain_counts_per_s,
+                none.max(MONITOR.least_push * model.coulomb_duty),
+                none.max(MONITOR.braking),
+            ),
             None if self.emf_gain > 0.0 => (self.emf_gain, none, none),
             None => return true,
         };
-        let polls: Vec<&Point> = self.recent.iter().filter(|point| point.t >= since_s - SPEED_S).collect();
+        let polls: Vec<&Point> =
+            self.recent.iter().filter(|point| point.t >= since_s - MONITOR.speed_s).collect();
         let mut beyond: Vec<f64> = polls
             .windows(2)
             .filter(|pair| pair[1].amps.is_some())
@@ -523,7 +541,7 @@ impl MotorMonitor {
         let mut since = self
             .recent
             .iter()
-            .filter(|point| point.t > since_s + PUSHED_S)
+            .filter(|point| point.t > since_s + MONITOR.pushed_s)
             .filter_map(|point| point.amps)
             .peekable();
         self.draws_clearly()
@@ -534,7 +552,7 @@ impl MotorMonitor {
     /// Whether the motor has kept its speed since then, though its friction alone would have slowed it down.
     fn goes_on(&self, since_s: f64) -> bool {
         let Some(to) = self.recent.back() else { return false };
-        let since = || self.recent.iter().filter(|point| point.t >= since_s - SPEED_S);
+        let since = || self.recent.iter().filter(|point| point.t >= since_s - MONITOR.speed_s);
         let middle_s = 0.5 * (since_s + to.t);
         let (Some(from), Some(middle)) = (since().next(), since().find(|point| point.t >= middle_s)) else {
             return false;
@@ -554,7 +572,7 @@ impl MotorMonitor {
 
     /// Highest reading that counts as no current, A.
     pub(crate) fn no_current_amps(&self) -> f64 {
-        NO_CURRENT_AMPS.max(NOISES * self.noise_amps)
+        SILENCE.no_current_amps.max(SILENCE.noises * self.noise_amps)
     }
 
     /// Whether a turning motor was seen to draw a current that can be distinguished from none: enough to name what an alarm is about, not to raise one.
@@ -573,7 +591,7 @@ impl MotorMonitor {
     }
 
     fn slew_per_s(&self) -> f64 {
-        DUTY_SLEW_PER_S * self.ramp.unwrap_or(1.0)
+        OPEN_LOOP.duty_slew_per_s * self.ramp.unwrap_or(1.0)
     }
 
     fn slewed(&self, duty: f64, goal: f64, seconds: f64) -> f64 {

@@ -3,12 +3,21 @@
 use crate::duty_limiter::{DutyLimit, Limiter, LimiterState};
 use crate::model::{Motion, PlantModel};
 use crate::poll::{Drive, Input, Point};
+use crate::thresholds::thresholds;
 
-/// Duty per second of the explicit highest acceleration: 100 % to -100 % in 100 ms.
-pub(crate) const DUTY_SLEW_PER_S: f64 = 20.0;
-/// Step along a duty ramp, and under a current limit, s.
-const RAMP_STEP_S: f64 = 0.001;
-const LIMITED_STEP_S: f64 = 0.002;
+thresholds! {
+    /// How duty goes from one value to another between two polls, and how exactly a poll is dated.
+    pub OPEN_LOOP: Thresholds {
+        /// Ramp of the explicit highest acceleration, in full duties per second: 100 % to -100 % in 100 ms.
+        duty_slew_per_s: f64 = 20.0,
+        /// Step of the computation along a duty ramp, in seconds.
+        ramp_step_s: f64 = 0.001,
+        /// Step of the computation under a current limit, in seconds.
+        limited_step_s: f64 = 0.002,
+        /// Standard deviation of the time stamp of a reading that came promptly or with its time, in seconds.
+        stamp_s: f64 = 0.0010,
+    }
+}
 
 /// Duties, counts and battery voltage over time.
 #[derive(Clone, Debug, Default)]
@@ -40,13 +49,15 @@ pub struct Actuation {
     pub stamp_s: f64,
 }
 
-/// The same of readings that came promptly or with their time.
-pub const STAMP_S: f64 = 0.0010;
-
 impl Default for Actuation {
     /// A ramp of 100 % to -100 % in 100 ms; half a tick of waiting and half a tick of age at 300 Hz.
     fn default() -> Self {
-        Self { slew_per_s: DUTY_SLEW_PER_S, offset_s: 0.0035, duty_limit: None, stamp_s: STAMP_S }
+        Self {
+            slew_per_s: OPEN_LOOP.duty_slew_per_s,
+            offset_s: 0.0035,
+            duty_limit: None,
+            stamp_s: OPEN_LOOP.stamp_s,
+        }
     }
 }
 
@@ -162,11 +173,11 @@ fn advance(actuation: &Actuation, model: &PlantModel, state: &mut Cursor, to: f6
         let left = to - state.t;
         let gap = state.goal - state.duty;
         let (step, duty) = if gap == 0.0 {
-            let longest = if model.drive_limit.is_some() { LIMITED_STEP_S } else { left };
+            let longest = if model.drive_limit.is_some() { OPEN_LOOP.limited_step_s } else { left };
             (left.min(longest), state.duty)
         } else {
             let slew = actuation.slew_per_s;
-            let step = left.min(RAMP_STEP_S).min(gap.abs() / slew);
+            let step = left.min(OPEN_LOOP.ramp_step_s).min(gap.abs() / slew);
             let change = (slew * step).min(gap.abs()) * gap.signum();
             let middle = state.duty + 0.5 * change;
             state.duty = if gap.abs() <= slew * step * 1.000_001 { state.goal } else { state.duty + change };

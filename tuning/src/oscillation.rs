@@ -4,18 +4,30 @@
 //! therefore laid over each other by their commands, and a plateau is searched for sines, whose counts grow as they get slower.
 
 use crate::lag::ClosedLoopRecord;
+use crate::thresholds::thresholds;
 use nalgebra::{Matrix4, Vector4};
 use std::f64::consts::TAU;
 
-/// Variance of a count's rounding, and standard deviation of its time at 300 Hz, s.
-const ROUNDING: f64 = 1.0 / 12.0;
-pub(crate) const STAMP_S: f64 = 0.001;
-/// The oscillations looked for, Hz, and how far up counts show them that came with their time.
-const OSCILLATIONS_HZ: (f64, f64) = (2.5, 16.0);
-const DATED_OSCILLATIONS_HZ: f64 = 33.0;
-/// How uncertain an average of flanks may be, as a share of the step, and the bounds of its width, s.
-const UNCERTAIN: f64 = 0.03;
-const WIDTH_S: (f64, f64) = (0.004, 0.25);
+thresholds! {
+    /// Which noise of a record counts as an oscillation.
+    pub(crate) OSCILLATION: Thresholds {
+        /// Variance of a count's rounding, in counts squared.
+        rounding: f64 = 1.0 / 12.0,
+        /// Standard deviation of the time of a count at 300 Hz, in seconds.
+        stamp_s: f64 = 0.001,
+        /// Lowest and highest frequency of the oscillations looked for, in hertz.
+        oscillations_hz: (f64, f64) = (2.5, 16.0),
+        /// Highest frequency that counts show which came with their time, in hertz.
+        dated_oscillations_hz: f64 = 33.0,
+        /// How uncertain an average of flanks may be, as a share of the step.
+        uncertain: f64 = 0.03,
+        /// Least and greatest half width of such an average, in seconds.
+        width_s: (f64, f64) = (0.004, 0.25),
+        /// How many times louder a speed may be than the duty that answers it says: a loop answers every oscillation that it sees. What the polls make up
+        /// of the age of a register, which beats with the tick, is not in the duty.
+        louder: f64 = 2.0,
+    }
+}
 
 /// Standard deviation about a slow trend.
 pub(crate) fn deviation(values: &[(f64, f64)]) -> f64 {
@@ -25,10 +37,6 @@ pub(crate) fn deviation(values: &[(f64, f64)]) -> f64 {
     let rest = detrended(values);
     (rest.iter().map(|r| r.1 * r.1).sum::<f64>() / (rest.len() as f64 - 4.0)).sqrt()
 }
-
-/// How many times louder a speed may be than the duty that answers it says: a loop answers every oscillation that it sees. What the polls make up
-/// of the age of a register, which beats with the tick, is not in the duty.
-const LOUDER: f64 = 2.0;
 
 /// What a loop answers to a speed: its duties over the same plateau, and the duty that a speed of 1 count/s at an angular frequency makes.
 pub(crate) struct Answer<'a> {
@@ -43,7 +51,8 @@ pub(crate) fn speed_ripple(
     record: &ClosedLoopRecord,
     answer: Option<&Answer<'_>>,
 ) -> f64 {
-    let highest_hz = if record.is_dated { DATED_OSCILLATIONS_HZ } else { OSCILLATIONS_HZ.1 };
+    let highest_hz =
+        if record.is_dated { OSCILLATION.dated_oscillations_hz } else { OSCILLATION.oscillations_hz.1 };
     let (Some(first), Some(last)) = (plateau.first(), plateau.last()) else { return 0.0 };
     let seconds = last.0 - first.0;
     if plateau.len() < 20 || seconds <= 0.0 {
@@ -56,18 +65,20 @@ pub(crate) fn speed_ripple(
     let answered = answer.filter(|answer| answer.duties.len() >= 20);
     let duties = answered.map(|answer| detrended(answer.duties)).unwrap_or_default();
     let most = |w: f64| {
-        let bound =
-            |answer: &Answer<'_>| (LOUDER / (answer.duty_per_speed)(w)).powi(2) * mean_square(&duties, w);
+        let bound = |answer: &Answer<'_>| {
+            (OSCILLATION.louder / (answer.duty_per_speed)(w)).powi(2) * mean_square(&duties, w)
+        };
         answered.map_or(f64::INFINITY, bound)
     };
-    let first = (OSCILLATIONS_HZ.0 * seconds).ceil().max(3.0) as usize;
+    let first = (OSCILLATION.oscillations_hz.0 * seconds).ceil().max(3.0) as usize;
     let sines: Vec<(f64, f64)> = (first..)
         .map(|k| TAU * k as f64 / seconds)
         .take_while(|w| *w <= TAU * nyquist)
         .map(|w| (w, mean_square(&rest, w)))
         .collect();
     // What noise alone gives each sine: what is known of it, or what most sines show (exponentially distributed) where that is less.
-    let known = 2.0 * (ROUNDING + (STAMP_S.hypot(record.stamp_s) * speed).powi(2)) / n;
+    let known =
+        2.0 * (OSCILLATION.rounding + (OSCILLATION.stamp_s.hypot(record.stamp_s) * speed).powi(2)) / n;
     let mut sorted: Vec<f64> = sines.iter().map(|sine| sine.1).collect();
     sorted.sort_by(f64::total_cmp);
     let middle = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
@@ -99,13 +110,13 @@ pub(crate) fn flank_overshoot(record: &ClosedLoopRecord, step: f64, poll_s: f64)
     }
     shares.sort_by(|a, b| a.0.total_cmp(&b.0));
     let goal = record.setpoints.iter().map(|s| s.1.abs()).fold(0.0, f64::max);
-    let stamp_s = STAMP_S.hypot(record.stamp_s);
-    let noise = (2.0 * (ROUNDING + (stamp_s * goal).powi(2))).sqrt() / poll_s / step.abs();
-    let wanted = (noise / UNCERTAIN).powi(2).max(1.0);
+    let stamp_s = OSCILLATION.stamp_s.hypot(record.stamp_s);
+    let noise = (2.0 * (OSCILLATION.rounding + (stamp_s * goal).powi(2))).sqrt() / poll_s / step.abs();
+    let wanted = (noise / OSCILLATION.uncertain).powi(2).max(1.0);
     let longest = shares.last().map_or(0.0, |last| last.0);
     let flanks = record.setpoints.len().max(1) as f64;
-    let half_s =
-        (0.5 * wanted * poll_s / flanks).clamp(WIDTH_S.0, WIDTH_S.1.min(0.25 * longest).max(WIDTH_S.0));
+    let half_s = (0.5 * wanted * poll_s / flanks)
+        .clamp(OSCILLATION.width_s.0, OSCILLATION.width_s.1.min(0.25 * longest).max(OSCILLATION.width_s.0));
     let mut most: f64 = 0.0;
     for (middle, _) in &shares {
         let from = shares.partition_point(|s| s.0 < middle - half_s);

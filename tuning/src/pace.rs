@@ -5,16 +5,22 @@
 
 use crate::axis::Exchange;
 use crate::cause::Whose;
+use crate::thresholds::thresholds;
 
-/// A gap that long is a late one, s: less than the 130 ms after which a driven motor is said not to have started and than the 200 ms
-/// after which the controller stops it; more than four lost replies in a row make of polls every 10 ms (67 ms on the plants of the bench).
-const LATE_S: f64 = 0.085;
-/// On a slow line it is one that is so many times the usual: two lost replies of those plants make up to 2.8.
-const LATE_RATIO: f64 = 4.0;
-/// How far exchanges may spread, s, from the one that a tenth were quicker than to the one that a tenth were slower than: half the time
-/// between two polls. Lost replies are none of them; the plants of the bench spread by 2 ms, a simulated controller beside it on a quiet
-/// computer by 0.1 ms, and with three busy programs to each processor by 12 to 16 ms.
-const UNSTEADY_S: f64 = 0.005;
+thresholds! {
+    /// When an answer counts as late.
+    PACE: Thresholds {
+        /// Gap beyond which an answer is late, in seconds: less than the 130 ms after which a driven motor is said not to have started and than the 200 ms after which
+        /// the controller stops it; more than four lost replies in a row make of polls every 10 ms (67 ms on the plants of the bench).
+        late_s: f64 = 0.085,
+        /// The same on a slow line, as a multiple of the usual gap: two lost replies of those plants make up to 2.8.
+        late_ratio: f64 = 4.0,
+        /// How far exchanges may spread, in seconds, from the one that a tenth were quicker than to the one that a tenth were slower than: half the time between two
+        /// polls. Lost replies are none of them; the plants of the bench spread by 2 ms, a simulated controller beside it on a quiet computer by 0.1 ms, and with three
+        /// busy programs to each processor by 12 to 16 ms.
+        unsteady_s: f64 = 0.005,
+    }
+}
 
 /// That answers were late.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -95,7 +101,7 @@ impl Pace {
 
     /// The longest gap, where it was a late one.
     pub(crate) fn late_gap(&self) -> Option<Late> {
-        let limit_s = LATE_S.max(LATE_RATIO * quantile(&self.gaps_s, 0.5).unwrap_or_default());
+        let limit_s = PACE.late_s.max(PACE.late_ratio * quantile(&self.gaps_s, 0.5).unwrap_or_default());
         self.longest.filter(|longest| longest.longest_s > limit_s)
     }
 
@@ -121,7 +127,7 @@ impl Pace {
         let longest_s = longest.longest_s.max(spread_s);
         // Whose the spread is, is whose it is in most of the exchanges, not in the longest gap.
         let stolen_s = longest_s * (spread(&self.stolen_each_s) / spread_s.max(f64::MIN_POSITIVE)).min(1.0);
-        (spread_s > UNSTEADY_S).then_some(Late { longest_s, stolen_s, ..longest })
+        (spread_s > PACE.unsteady_s).then_some(Late { longest_s, stolen_s, ..longest })
     }
 }
 

@@ -11,26 +11,33 @@ use crate::lag::LagFit;
 use crate::law::Law;
 use crate::model::{Gains, Lag, PlantModel};
 
+use crate::thresholds::thresholds;
 use serde::Serialize;
 
-/// How wide the ranges are. Chosen on 288 velocity loops of the bench (96 each of seeds 7, 11 and 101) and 96 of a Motion Mind (seed 7), of which they hold 92 to 97 %
-/// (MEASURED.md, "Intervals").
-struct Widths {
-    /// Standard deviations of a quantity at which it is tried.
-    deviations: f64,
-    /// What no model of one mass tells of the sensitivity's excess over 1: two deviations downwards and upwards, over that excess, and a part that does not depend on it.
-    ms: (f64, f64, f64),
-    /// Narrowest and widest band that a step may be said to have settled in, over the usual one: what rounding, ripple and an unknown load do.
-    bands: (f64, f64),
-    /// What the settling time is off by at the least, over itself; a tick is added.
-    settling: f64,
+thresholds! {
+    /// How wide the ranges are. Chosen on 288 velocity loops of the bench (96 each of seeds 7, 11 and 101) and 96 of a Motion Mind (seed 7), of which they hold 92 to 97 %
+    /// (MEASURED.md, "Intervals").
+    PROMISE_WIDTHS: Widths {
+        /// How many of its standard deviations to either side each quantity is tried at.
+        deviations: f64 = 2.0,
+        /// What no model of one mass tells of the sensitivity's excess over 1, as two deviations: downwards and upwards as shares of that excess, and a part that does
+        /// not depend on it.
+        ms: (f64, f64, f64) = (0.2, 0.4, 0.02),
+        /// Narrowest and widest band that a step may be said to have settled in, as multiples of the usual one: what rounding, ripple and an unknown load do.
+        bands: (f64, f64) = (0.6, 1.6),
+        /// What the settling time is off by at the least, as a share of it; a tick is added.
+        settling: f64 = 0.05,
+    }
 }
 
-const WIDTHS: Widths = Widths { deviations: 2.0, ms: (0.2, 0.4, 0.02), bands: (0.6, 1.6), settling: 0.05 };
-
-/// By how much the sensitivity's excess over 1 may be more than the model has it where the model does not explain the closed loop. Springy joints of the bench with such a
-/// lag had up to 4.95 times as much.
-const UNEXPLAINED_EXCESS: f64 = 4.5;
+thresholds! {
+    /// What the model leaves unexplained of the margins.
+    PROMISE: Thresholds {
+        /// Highest excess of the sensitivity over 1 where the model does not explain the closed loop, as a multiple of the one that the model has. Springy joints of the
+        /// bench with such a lag had up to 4.95 times as much.
+        unexplained_excess: f64 = 4.5,
+    }
+}
 
 /// What gains promise, each as the range that holds the truth with a probability of about 95 %.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -59,12 +66,12 @@ impl Promise {
 
 /// The sensitivity that a loop may have which its model does not explain.
 pub(crate) fn unexplained_ms(ms: f64) -> f64 {
-    1.0 + UNEXPLAINED_EXCESS * (ms - 1.0)
+    1.0 + PROMISE.unexplained_excess * (ms - 1.0)
 }
 
 /// The task with each quantity at either end of its interval.
 fn others<L: Law>(task: &Task<L>, fit: &Fit, lag: Option<&LagFit>) -> [[Task<L>; 2]; 4] {
-    let ends = [-WIDTHS.deviations, WIDTHS.deviations];
+    let ends = [-PROMISE_WIDTHS.deviations, PROMISE_WIDTHS.deviations];
     let with = |plant: PlantModel| Task { plant, ..*task };
     let plant = task.plant;
     let factor = |sd: f64, n: f64| (n * sd).exp();
@@ -90,7 +97,7 @@ fn others<L: Law>(task: &Task<L>, fit: &Fit, lag: Option<&LagFit>) -> [[Task<L>;
 
 fn sensitivity(likely: &Forecast, others: &[[Forecast; 2]], is_unexplained: bool) -> (f64, f64) {
     let excess = likely.ms - 1.0;
-    let (below, above, constant) = WIDTHS.ms;
+    let (below, above, constant) = PROMISE_WIDTHS.ms;
     let (mut low, mut high) = (below * excess + constant, above * excess + constant);
     for ends in others {
         let off = ends.each_ref().map(|end| end.ms - likely.ms);
@@ -104,9 +111,9 @@ fn sensitivity(likely: &Forecast, others: &[[Forecast; 2]], is_unexplained: bool
 
 fn settling(likely: &Forecast, others: &[[Forecast; 2]], tick_s: f64) -> (f64, f64) {
     let usual = likely.score.settling_s;
-    let mut low = usual * (1.0 - WIDTHS.settling) - tick_s;
-    let mut high = usual * (1.0 + WIDTHS.settling) + tick_s;
-    let bands = [WIDTHS.bands.0, 1.0, WIDTHS.bands.1];
+    let mut low = usual * (1.0 - PROMISE_WIDTHS.settling) - tick_s;
+    let mut high = usual * (1.0 + PROMISE_WIDTHS.settling) + tick_s;
+    let bands = [PROMISE_WIDTHS.bands.0, 1.0, PROMISE_WIDTHS.bands.1];
     for forecast in std::iter::once(likely).chain(others.iter().flatten()) {
         for settled in bands.map(|share| forecast.settled_within(share)) {
             low = low.min(settled);

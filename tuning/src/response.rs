@@ -6,30 +6,41 @@
 
 use crate::fit::innovations;
 use crate::step::{Point, StepFigures};
+use crate::thresholds::thresholds;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::storage::Owned;
 use nalgebra::{Complex, DMatrix, DVector, Dyn};
 
-/// Variance of a count's rounding, and the error by which the model drifts, over the speed and the root of a second.
-const ROUNDING: f64 = 0.1;
-const DRIFT: f64 = 0.003;
-/// Standard deviation of a reading's age, s: the controller takes its counts once in a tick.
-const AGE_S: f64 = crate::open_loop_record::STAMP_S;
-/// Range of the delay, s, and its prior.
-const DELAY_S: (f64, f64) = (-0.01, 0.5);
-const DELAY_PRIOR_S: (f64, f64) = (0.005, 0.03);
-/// Priors of the natural frequency, rad/s, and of the damping, as standard deviations of their logarithms: weak, for what the readings cannot tell.
-const FREQUENCY_PRIOR: (f64, f64) = (40.0, 3.0);
-const DAMPING_PRIOR: (f64, f64) = (1.0, 1.5);
+thresholds! {
+    /// The fit of a second-order response to the steps of a closed loop.
+    RESPONSE: Thresholds {
+        /// Variance of a count's rounding, in counts squared.
+        rounding: f64 = 0.1,
+        /// How far the counts drift off the model in a second, as a standard deviation over the counts that the motor makes in that second; it grows with the root of the
+        /// time.
+        drift: f64 = 0.003,
+        /// Standard deviation of a reading's age, in seconds: the controller takes its counts once in a tick.
+        age_s: f64 = crate::open_loop_record::OPEN_LOOP.stamp_s,
+        /// Lowest and highest delay, in seconds.
+        delay_s: (f64, f64) = (-0.01, 0.5),
+        /// Prior mean and standard deviation of the delay, in seconds.
+        delay_prior_s: (f64, f64) = (0.005, 0.03),
+        /// Prior of the natural frequency: its median, in radians per second, and the standard deviation of its logarithm. It is weak, for what the readings cannot tell.
+        frequency_prior: (f64, f64) = (40.0, 3.0),
+        /// Prior of the damping: the median of its ratio, and the standard deviation of its logarithm. It is as weak.
+        damping_prior: (f64, f64) = (1.0, 1.5),
+        /// Time between two points of the fitted response, in seconds.
+        step_s: f64 = 0.001,
+        /// Reduced chi-square above which a model is not what was seen.
+        most_chi_square: f64 = 25.0,
+        /// Error above which a model is not what was seen, as a root mean square over the step, or over the way that the step makes.
+        most_error: f64 = 0.1,
+    }
+}
+
 /// Start values of the frequency, rad/s, and of the damping.
 const STARTS: [(f64, f64); 6] =
     [(8.0, 1.2), (30.0, 1.2), (120.0, 1.2), (400.0, 1.5), (15.0, 0.4), (80.0, 0.4)];
-/// Time between two points of the fitted response, s.
-const STEP_S: f64 = 0.001;
-/// A model whose reduced chi-square is above this is not what was seen.
-const MOST_CHI_SQUARE: f64 = 25.0;
-/// The same of one whose error is a greater share of the step, or of the way that the step makes.
-const MOST_ERROR: f64 = 0.1;
 
 /// One reading of an encoder.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -123,7 +134,7 @@ impl<'a> Problem<'a> {
         let q = DVector::from_vec(vec![
             frequency.ln(),
             damping.ln(),
-            unbounded(0.005, DELAY_S),
+            unbounded(0.005, RESPONSE.delay_s),
             height / scale,
             start / scale,
             speed / scale,
@@ -133,8 +144,8 @@ impl<'a> Problem<'a> {
             .map(|pair| {
                 let dt = (pair[1].time_s - pair[0].time_s).max(1e-4);
                 let speed = (pair[1].counts - pair[0].counts) / dt;
-                let stamp = pair[0].spread_s.max(pair[1].spread_s).hypot(AGE_S);
-                (ROUNDING + (stamp * speed).powi(2), (DRIFT * speed).powi(2) * dt + 1e-3)
+                let stamp = pair[0].spread_s.max(pair[1].spread_s).hypot(RESPONSE.age_s);
+                (RESPONSE.rounding + (stamp * speed).powi(2), (RESPONSE.drift * speed).powi(2) * dt + 1e-3)
             })
             .collect();
         noise.insert(0, noise.first().copied().unwrap_or((1.0, 1.0)));
@@ -142,7 +153,7 @@ impl<'a> Problem<'a> {
     }
 
     fn shape(q: &DVector<f64>) -> Shape {
-        Shape::new(q[0].clamp(-3.0, 9.0).exp(), q[1].clamp(-4.0, 4.0).exp(), bounded(q[2], DELAY_S))
+        Shape::new(q[0].clamp(-3.0, 9.0).exp(), q[1].clamp(-4.0, 4.0).exp(), bounded(q[2], RESPONSE.delay_s))
     }
 
     /// What each reading has beyond the model, counts.
@@ -162,9 +173,9 @@ impl<'a> Problem<'a> {
         let errors = self.errors(q);
         let mut residuals = innovations(&errors, &self.noise);
         residuals.extend([
-            (q[0] - FREQUENCY_PRIOR.0.ln()) / FREQUENCY_PRIOR.1,
-            (q[1] - DAMPING_PRIOR.0.ln()) / DAMPING_PRIOR.1,
-            (bounded(q[2], DELAY_S) - DELAY_PRIOR_S.0) / DELAY_PRIOR_S.1,
+            (q[0] - RESPONSE.frequency_prior.0.ln()) / RESPONSE.frequency_prior.1,
+            (q[1] - RESPONSE.damping_prior.0.ln()) / RESPONSE.damping_prior.1,
+            (bounded(q[2], RESPONSE.delay_s) - RESPONSE.delay_prior_s.0) / RESPONSE.delay_prior_s.1,
         ]);
         // The drift that is followed begins at no error.
         residuals.extend(errors.first().zip(self.noise.first()).map(|(error, noise)| error / noise.0.sqrt()));
@@ -182,9 +193,9 @@ impl<'a> Problem<'a> {
             Quantity::Position => self.scale * q[4],
             Quantity::Speed => self.scale * q[5],
         };
-        let count = (last_s / STEP_S).ceil() as usize;
+        let count = (last_s / RESPONSE.step_s).ceil() as usize;
         let point = |index: usize| {
-            let time_s = index as f64 * STEP_S;
+            let time_s = index as f64 * RESPONSE.step_s;
             Point { time_s, value: start + self.scale * q[3] * shape.value(time_s) }
         };
         (start, (0..=count).map(point).collect())
@@ -206,7 +217,7 @@ impl<'a> Problem<'a> {
             Quantity::Position => self.scale,
             Quantity::Speed => self.scale * last_s,
         };
-        if chi_square > MOST_CHI_SQUARE || rms > MOST_ERROR * whole {
+        if chi_square > RESPONSE.most_chi_square || rms > RESPONSE.most_error * whole {
             return None;
         }
         let jacobian = self.jacobian_at(&self.q);

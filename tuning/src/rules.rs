@@ -7,10 +7,16 @@ use crate::experiment::FreeRun;
 use crate::law::Law;
 use crate::model::{Gains, Pid};
 use crate::poll::{Drive, Input, Point};
+use crate::thresholds::thresholds;
 use serde::{Deserialize, Serialize};
 
-/// Shortest dead time that a step fit may give, s: none at all has no gain.
-const SHORTEST_S: f64 = 0.0002;
+thresholds! {
+    /// The classic rules.
+    RULES: Thresholds {
+        /// Shortest dead time that a step fit may give, in seconds: none at all has no gain.
+        shortest_s: f64 = 0.0002,
+    }
+}
 
 /// What the classic experiments see.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -55,7 +61,7 @@ impl Classic {
         Some(Self {
             gain_counts_per_s: last / run.full_duty,
             tau_s,
-            dead_time_s: (t63 - tau_s).max(SHORTEST_S),
+            dead_time_s: (t63 - tau_s).max(RULES.shortest_s),
             ultimate_gain: 4.0 * height / (std::f64::consts::PI * amplitude.max(1.0)),
             ultimate_period_s: 2.0 * half_period,
         })
@@ -64,7 +70,7 @@ impl Classic {
     /// What the experiments would see of a known motor: its ultimate point is where gain times dead time turn it by half a turn.
     #[must_use]
     pub fn of_model(gain_counts_per_s: f64, tau_s: f64, dead_time_s: f64) -> Self {
-        let dead_time_s = dead_time_s.max(SHORTEST_S);
+        let dead_time_s = dead_time_s.max(RULES.shortest_s);
         let (mut low, mut high) = (1e-3, 1e5);
         for _ in 0..80 {
             let w = f64::sqrt(low * high);

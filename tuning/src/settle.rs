@@ -4,6 +4,7 @@
 //! without a start value.
 
 use crate::poll::Point;
+use crate::thresholds::thresholds;
 use nalgebra::{Matrix3, Vector3};
 
 /// A speed that a drive settles at.
@@ -21,10 +22,15 @@ pub struct Settled {
     pub remaining: f64,
 }
 
-/// Time constants tried, s: lowest, highest, how many.
-const GRID: (f64, f64, u32) = (0.004, 4.0, 26);
-/// Standard deviation of a time stamp, s.
-const STAMP_S: f64 = 0.0006;
+thresholds! {
+    /// The fit of an exponential to a speed that settles.
+    SETTLE: Thresholds {
+        /// Time constants that are tried: lowest and highest, in seconds, and how many.
+        grid: (f64, f64, u32) = (0.004, 4.0, 26),
+        /// Standard deviation of a time stamp, in seconds.
+        stamp_s: f64 = 0.0006,
+    }
+}
 
 /// Fits the points, which all belong to one drive. `None` with fewer than eight.
 #[must_use]
@@ -35,7 +41,7 @@ pub fn settled(points: &[Point]) -> Option<Settled> {
     }
     let quarter = &points[points.len() * 3 / 4..];
     let tail_speed = slope(quarter)?;
-    let sigma2 = 0.17 + (STAMP_S * tail_speed).powi(2);
+    let sigma2 = 0.17 + (SETTLE.stamp_s * tail_speed).powi(2);
     let mut best: Option<(f64, f64, f64, f64, f64)> = None;
     let mut all = Vec::new();
     let mut tried = |tau: f64, best: &mut Option<(f64, f64, f64, f64, f64)>| {
@@ -48,12 +54,12 @@ pub fn settled(points: &[Point]) -> Option<Settled> {
             *best = Some((speed, variance * sigma2, tau, cost, remaining));
         }
     };
-    let ratio = GRID.1 / GRID.0;
-    for n in 0..GRID.2 {
-        tried(GRID.0 * ratio.powf(f64::from(n) / f64::from(GRID.2 - 1)), &mut best);
+    let ratio = SETTLE.grid.1 / SETTLE.grid.0;
+    for n in 0..SETTLE.grid.2 {
+        tried(SETTLE.grid.0 * ratio.powf(f64::from(n) / f64::from(SETTLE.grid.2 - 1)), &mut best);
     }
     // Between the points of the grid, three times finer each round.
-    let mut spacing = ratio.powf(1.0 / f64::from(GRID.2 - 1));
+    let mut spacing = ratio.powf(1.0 / f64::from(SETTLE.grid.2 - 1));
     for _ in 0..3 {
         spacing = spacing.powf(1.0 / 3.0);
         let centre = best?.2;

@@ -3,10 +3,16 @@
 //! Definitions as in control texts (Astrom and Murray, "Feedback Systems", 2nd edition, section 6.3): rise time from 10 % to 90 %
 //! of the step, overshoot beyond the setpoint as a share of the step, settling time after which the response stays within 5 %.
 
+use crate::thresholds::thresholds;
 use serde::Serialize;
 
-/// The band around the setpoint inside which a response counts as settled, as a share of the step.
-const SETTLED_SHARE: f64 = 0.05;
+thresholds! {
+    /// When a step counts as settled.
+    SETTLED: Thresholds {
+        /// The band around the setpoint inside which a response counts as settled, as a share of the step.
+        settled_share: f64 = 0.05,
+    }
+}
 
 /// One measured point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,7 +74,7 @@ fn crossing(shares: &[Point], level: f64) -> Option<f64> {
 }
 
 fn settling_time(shares: &[Point]) -> Option<f64> {
-    let is_outside = |point: &Point| (point.value - 1.0).abs() > SETTLED_SHARE;
+    let is_outside = |point: &Point| (point.value - 1.0).abs() > SETTLED.settled_share;
     match shares.iter().rposition(is_outside) {
         None => shares.first().map(|point| point.time_s),
         Some(last) => shares.get(last + 1).map(|point| point.time_s),

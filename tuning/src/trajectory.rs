@@ -5,14 +5,20 @@
 //! top speed is reached in three time constants at the latest: a motor that is told to be quicker saturates, winds its integral up and overshoots.
 
 use crate::model::PlantModel;
+use crate::thresholds::thresholds;
 use serde::{Deserialize, Serialize};
 
-/// Duty that stays with the loop: the load step by which responses are judged.
-const RESERVE_DUTY: f64 = crate::score::LOAD_STEP_DUTY;
-/// Share of what is left that goes into speed.
-const SPEED_SHARE: f64 = 0.75;
-/// Share of a current limit that a trajectory may use: it is a wall that nothing makes up for.
-const LIMIT_SHARE: f64 = 0.8;
+thresholds! {
+    /// What a trajectory leaves in reserve.
+    TRAJECTORY: Thresholds {
+        /// Duty that stays with the loop, as a share of full: the load step by which responses are judged.
+        reserve_duty: f64 = crate::score::LOAD_STEP_DUTY,
+        /// Share of the duty that is then left which goes into speed.
+        speed_share: f64 = 0.75,
+        /// Share of a current limit that a trajectory may use: it is a wall that nothing makes up for.
+        limit_share: f64 = 0.8,
+    }
+}
 
 /// A trapezoid of speed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -28,16 +34,17 @@ impl Trajectory {
     #[must_use]
     pub fn of(model: &PlantModel) -> Option<Self> {
         let held = model.coulomb_duty + model.load_duty.abs();
-        let most = 1.0 - RESERVE_DUTY;
+        let most = 1.0 - TRAJECTORY.reserve_duty;
         // The battery sags by the current of the duty itself.
         let left = most * (1.0 - model.sag * most * most) - held;
         if left <= 0.0 {
             return None;
         }
-        let speed_duty = SPEED_SHARE * left;
+        let speed_duty = TRAJECTORY.speed_share * left;
         let limit = [model.drive_limit, model.brake_limit].into_iter().flatten().reduce(f64::min);
-        let push =
-            limit.map_or(left - speed_duty, |limit| (left - speed_duty).min(LIMIT_SHARE * limit - held));
+        let push = limit.map_or(left - speed_duty, |limit| {
+            (left - speed_duty).min(TRAJECTORY.limit_share * limit - held)
+        });
         (push > 0.0).then_some(Self {
             speed_counts_per_s: model.gain_counts_per_s * speed_duty,
             accel_counts_per_s2: model.gain_counts_per_s * push / model.tau_s,

@@ -24,34 +24,43 @@ use crate::report::{FORMAT, Report, Verdict};
 pub use crate::request::{Excitation, Identification, MIDDLE_DUTY, Method, Request};
 use crate::rules::Classic;
 use crate::setup::{LoopAxis, Setup};
+use crate::thresholds::thresholds;
 use crate::verify::{check_moves, measure_lag, stays_put};
 use crate::winding::winding_of;
 
-/// Highest chi-square of a fit that is believed.
-const WORST_CHI_SQUARE: f64 = 12.0;
-/// Loosest time constant, as standard deviation of its logarithm, of a motor slower than four polls.
-const LOOSEST_TAU: f64 = 0.5;
-/// Duty by which a load is above the friction before it is called heavy.
-const SURELY_HEAVY: f64 = 0.005;
-/// Misfit of the closed loop beyond which the model is taken as incomplete, and what is then left of the sensitivity's excess.
-const ODD_CHI_SQUARE: f64 = 1.5;
-const ODD_SHARE: f64 = 0.6;
-/// The overshoot that is then designed for.
-const SHORT_OVERSHOOT: f64 = 0.15;
-/// Misfit that speaks of backlash, and the shortest integral time of such a machine, in time constants.
-const LOOSE_CHI_SQUARE: f64 = 1.6;
-const LOOSE_INTEGRAL: f64 = 1.2;
-/// Share of the travel window that has to be free around the axis, and the narrowest window, counts.
-const ENOUGH_ROOM: f64 = 0.8;
-const LEAST_WIDTH_COUNTS: f64 = 24.0;
-/// The readings of an absolute encoder that are used: 0 to 4095 but for a little at both ends (MCP manual 2.4.3).
-const ABSOLUTE_RANGE: (i64, i64) = (40, 4_055);
-/// Standard deviation of a count that is rounded and nothing else.
-const ROUNDED_COUNTS: f64 = 0.289;
-/// The sensitivity of the loop by which the lag is measured, on the lag that is usual.
-const CAREFUL_MS: f64 = 1.4;
-/// How far a lag interval may reach before the lag counts as unknown, s.
-const WIDEST_LAG_S: f64 = 0.012;
+thresholds! {
+    /// When a fit is doubted, repeated or refused, and how a run goes on then.
+    TUNE: Thresholds {
+        /// Highest reduced chi-square of a fit that is believed.
+        worst_chi_square: f64 = 12.0,
+        /// Loosest time constant of a fit that is believed, as the standard deviation of its logarithm, of a motor slower than four polls.
+        loosest_tau: f64 = 0.5,
+        /// Duty by which a load is above the friction before it is called heavy, as a share of full.
+        surely_heavy: f64 = 0.005,
+        /// Misfit of the closed loop (reduced chi-square) beyond which the model is taken as incomplete.
+        odd_chi_square: f64 = 1.5,
+        /// What is then left of the excess of the goal's sensitivity over 1, as a share.
+        odd_share: f64 = 0.6,
+        /// Overshoot that is then designed for, as a share of the step.
+        short_overshoot: f64 = 0.15,
+        /// Misfit of the closed loop (reduced chi-square) that speaks of backlash.
+        loose_chi_square: f64 = 1.6,
+        /// Shortest integral time of such a machine, in time constants of the motor.
+        loose_integral: f64 = 1.2,
+        /// Share of the travel window that has to be free around the axis.
+        enough_room: f64 = 0.8,
+        /// Narrowest travel window, in counts.
+        least_width_counts: f64 = 24.0,
+        /// Lowest and highest reading of an absolute encoder that is used, in counts: 0 to 4095 but for a little at both ends (MCP manual 2.4.3).
+        absolute_range: (i64, i64) = (40, 4_055),
+        /// Standard deviation of a count that is rounded and nothing else, in counts.
+        rounded_counts: f64 = 0.289,
+        /// Maximum sensitivity (Ms) of the loop by which the lag is measured, on the lag that is usual.
+        careful_ms: f64 = 1.4,
+        /// Width of a lag's interval beyond which the lag counts as unknown, in seconds.
+        widest_lag_s: f64 = 0.012,
+    }
+}
 
 /// Runs it. The motor stands and the old gains are in force when it returns, unless the request keeps the new ones.
 pub fn tune<L: LawProbe>(axis: &mut dyn LoopAxis<L>, request: &Request<L>) -> Report<L> {
@@ -103,9 +112,9 @@ fn confined<L: Law>(request: &Request<L>, setup: &Setup<L>) -> Request<L> {
     if setup.encoder == EncoderClass::Quadrature {
         return *request;
     }
-    let held = L::position_limits(&setup.held).filter(|held| held.0 < held.1).unwrap_or(ABSOLUTE_RANGE);
+    let held = L::position_limits(&setup.held).filter(|held| held.0 < held.1).unwrap_or(TUNE.absolute_range);
     let (low, high) = request.guard.travel.unwrap_or(held);
-    let (low, high) = (low.max(ABSOLUTE_RANGE.0), high.min(ABSOLUTE_RANGE.1));
+    let (low, high) = (low.max(TUNE.absolute_range.0), high.min(TUNE.absolute_range.1));
     let width = ((high - low) as f64).max(0.0);
     let width = match request.excitation {
         Excitation::Free => width,
@@ -223,7 +232,7 @@ fn identify<L: Law>(
     guard.monitor.full_speed = guard.monitor.full_speed.max(found.qpps);
     report.fit = Some(found.fit);
     report.qpps = Some(found.qpps);
-    if model.load_duty.abs() > model.coulomb_duty + SURELY_HEAVY {
+    if model.load_duty.abs() > model.coulomb_duty + TUNE.surely_heavy {
         report.causes.push(Cause::HeavyLoad);
     }
     report.seconds.0 = guard.now_s();
@@ -258,7 +267,7 @@ fn design<L: LawProbe>(
         },
         qpps: found.qpps,
         goal: Goal::of_level(request.level),
-        noise_factor: (probe.noise_counts / ROUNDED_COUNTS).max(1.0),
+        noise_factor: (probe.noise_counts / TUNE.rounded_counts).max(1.0),
         backlash_counts: 0.0,
         least_integral_s: 0.0,
         most_overshoot: USUAL_OVERSHOOT,
@@ -311,12 +320,12 @@ fn of_unit<L: Law>(
 /// The width that fits into the travel window around where the axis stands; from near an end it goes to the middle first.
 fn usable_width<L: Law>(guard: &mut ExperimentGuard<'_, L>, probe: &Probe, width: f64) -> Result<f64, Cause> {
     let Some((low, high)) = guard.travel_counts() else { return Ok(width) };
-    if guard.room_counts().is_some_and(|room| room < ENOUGH_ROOM * (high - low)) {
+    if guard.room_counts().is_some_and(|room| room < TUNE.enough_room * (high - low)) {
         guard.progress("Going to the middle of the travel");
         go_to(guard, probe, 0.5 * (low + high))?;
     }
     let room = guard.room_counts().unwrap_or(0.0).min(width);
-    if room < LEAST_WIDTH_COUNTS { Err(Cause::NarrowTravel) } else { Ok(room) }
+    if room < TUNE.least_width_counts { Err(Cause::NarrowTravel) } else { Ok(room) }
 }
 
 /// The request with the law that the controller follows. A run that may not move by loops keeps the law that it was given.
@@ -462,10 +471,10 @@ fn believe(fit: &Fit, poll_s: f64, record: &OpenLoopRecord) -> Result<(), Cause>
     if record.limited_share() > 0.5 {
         return Err(Cause::CurrentLimited);
     }
-    if fit.chi_square > WORST_CHI_SQUARE {
+    if fit.chi_square > TUNE.worst_chi_square {
         return Err(Cause::PoorFit);
     }
-    if fit.sd_ln_tau > LOOSEST_TAU && fit.model.tau_s > 4.0 * poll_s {
+    if fit.sd_ln_tau > TUNE.loosest_tau && fit.model.tau_s > 4.0 * poll_s {
         return Err(Cause::TooCoarse);
     }
     Ok(())
@@ -481,7 +490,7 @@ fn settle_lag<L: Law>(
     if !request.verify || !stays_put(&task, request.excitation) {
         return Ok(task);
     }
-    let careful = unfiltered(Task { goal: Goal { ms: CAREFUL_MS, ..task.goal }, ..task });
+    let careful = unfiltered(Task { goal: Goal { ms: TUNE.careful_ms, ..task.goal }, ..task });
     let Some(design) = design_velocity(&careful) else { return Ok(task) };
     let registers = guard.write_gains(&task.law, &design.gains, task.qpps)?;
     let gains = task.law.gains(&registers, task.qpps, false);
@@ -528,7 +537,7 @@ fn with_lag<L: Law>(task: Task<L>, found: &LagFit) -> Task<L> {
     // A record that says little leaves what such a controller may have.
     let longest = facts.longest_lag;
     let tick_s = task.law.tick_s();
-    let is_wide = found.interval_s.1 - found.interval_s.0 > WIDEST_LAG_S;
+    let is_wide = found.interval_s.1 - found.interval_s.0 > TUNE.widest_lag_s;
     let is_within = found.lag.total_s(tick_s) < longest.total_s(tick_s);
     let worst_lag = if is_wide && is_within && worst_lag.total_s(tick_s) > longest.total_s(tick_s) {
         longest
@@ -536,13 +545,13 @@ fn with_lag<L: Law>(task: Task<L>, found: &LagFit) -> Task<L> {
         worst_lag
     };
     let (mut goal, mut least_integral_s, mut most_overshoot) = (task.goal, 0.0, task.most_overshoot);
-    if found.chi_square > ODD_CHI_SQUARE {
+    if found.chi_square > TUNE.odd_chi_square {
         // Something oscillates or has backlash that the model knows nothing of: keep more distance.
-        goal.ms = 1.0 + ODD_SHARE * (goal.ms - 1.0);
-        most_overshoot = SHORT_OVERSHOOT;
+        goal.ms = 1.0 + TUNE.odd_share * (goal.ms - 1.0);
+        most_overshoot = TUNE.short_overshoot;
     }
-    if found.chi_square > LOOSE_CHI_SQUARE {
-        least_integral_s = LOOSE_INTEGRAL * plant.tau_s;
+    if found.chi_square > TUNE.loose_chi_square {
+        least_integral_s = TUNE.loose_integral * plant.tau_s;
     }
     Task { plant, lag: found.lag, worst_lag, goal, least_integral_s, most_overshoot, ..task }
 }

@@ -8,7 +8,7 @@ use crate::experiment_guard::{ExperimentGuard, Point};
 use crate::lag::{ClosedLoopRecord, LagFit, Stretch, fit_lag, predicted_record};
 use crate::law::Law;
 use crate::linear::{DiscretePlant, LoopPlant};
-use crate::margin::{INSIDE_SHARE, MOST_MS, headroom, may_be_short, scaled};
+use crate::margin::{MARGIN, headroom, may_be_short, scaled};
 use crate::model::{Gains, Pid};
 use crate::oscillation::{Answer, deviation, flank_overshoot, speed_ripple};
 use crate::promise::unexplained_ms;
@@ -16,57 +16,79 @@ use crate::proposal::{design_for, propose};
 use crate::report::{Measured, Report};
 use crate::request::{Excitation, Identification, Method, Request};
 use crate::score::{horizon_s, position_step};
+use crate::thresholds::thresholds;
 use crate::ticks::{TickLoop, velocity_test};
 
-/// Setpoint of the velocity trial, as a share of full speed.
-const MIDDLE: f64 = 0.45;
-/// Steps of the velocity trial.
-const STEPS: usize = 6;
-/// What a step of the trial asks of the duty at once, and at the least; the share of what the current limit leaves that it may be; bounds of its height,
-/// share of full speed.
-const LAG_SPEED: f64 = 0.45;
-const STEP_JUMP: f64 = 0.7;
-const LEAST_JUMP: f64 = 0.05;
-const BELOW_LIMIT: f64 = 0.8;
-const LEAST_STEP: f64 = 0.02;
-const MOST_STEP: f64 = 0.3;
-/// Irregular dwell times, relative: no limit cycle can hide in step with them.
-const DWELLS: [f64; STEPS] = [1.0, 0.87, 1.15, 0.93, 1.17, 0.83];
-/// Share of the friction up to which a load certainly does not move an axis that is off.
-const MOST_LOAD: f64 = 0.5;
-/// Lengths of the strokes in a travel, relative: irregular, and as long forth as back.
-const STROKES: [f64; 10] = [0.5, 1.0, 1.0, 0.87, 0.87, 1.1, 1.1, 0.93, 0.93, 0.5];
-/// Overshoot of a move that a position loop may show, and by how much it may be more than predicted.
-const MOST_POSITION_OVERSHOOT: f64 = 0.05;
-const POSITION_DOUBT: f64 = 0.04;
-/// Counts that are no overshoot yet, and no oscillation yet.
-const ROUNDED_COUNTS: f64 = 1.5;
-const ROUNDING_COUNTS: f64 = 2.5;
-/// Overshoot and ripple over the step that a velocity loop may show.
-const MOST_OVERSHOOT: f64 = 0.235;
-const MOST_RIPPLE: f64 = 0.045;
-/// Counts that a short move may still go in the last third of the time in which it should be over, at the least and over the step; and
-/// the counts from which on the step is long, so that a slow end is no matter of the encoder's.
-const TAIL_COUNTS: f64 = 4.0;
-const TAIL_SHARE: f64 = 0.02;
-const FINE_COUNTS: f64 = 8.0;
-/// Oscillation of a position at rest over the step, beyond what rounding may show.
-const MOST_POSITION_RIPPLE: f64 = 0.010;
-/// Share of a move that a loop which works makes at the least, and of a speed.
-const LEAST_MOVE: f64 = 0.2;
-/// Share of the distance to the farther end of the travel that a move goes at the most.
-const MOST_OF_ROOM: f64 = 0.6;
-/// How long the last move is watched when it should be over, s.
-const WATCH_S: f64 = 0.6;
-/// Misfit of the closed loop from which on nothing that the model says of a margin is believed: springy joints of the bench with a true Ms of 2.6 to 3, for which 1.21 and
-/// less was predicted, have 2.4.
-const NO_MODEL: f64 = 2.0;
-/// How often the gains may be lowered.
-const MOST_BACK_OFFS: usize = 3;
-/// Overshoot that gains which cannot be lowered further may show where no reading of the duty says more.
-const MOST_UNSEEN_OVERSHOOT: f64 = 0.10;
-/// What lowering them means.
-const BACK_OFF: f64 = 0.7;
+thresholds! {
+    /// The trial of the gains on the machine: its steps, what passes, and how gains are lowered.
+    VERIFY: Thresholds {
+        /// Highest speed of the velocity trial within a travel, as a share of full speed.
+        middle: f64 = 0.45,
+        /// Speed about which the steps go that show the lag, as a share of full speed.
+        lag_speed: f64 = 0.45,
+        /// The most that such a step asks of the duty at once, as a share of full.
+        step_jump: f64 = 0.7,
+        /// The least that it asks of the duty at once, as a share of full.
+        least_jump: f64 = 0.05,
+        /// Share of the duty that the current limit, friction and load leave which a step may ask for.
+        below_limit: f64 = 0.8,
+        /// Least height of such a step, as a share of full speed.
+        least_step: f64 = 0.02,
+        /// Greatest height of such a step, as a share of full speed.
+        most_step: f64 = 0.3,
+        /// Lengths of the stays between these steps, relative: irregular, so that no limit cycle can hide in step with them.
+        dwells: [f64; 6] = [1.0, 0.87, 1.15, 0.93, 1.17, 0.83],
+        /// Load that certainly does not move an axis that is off, as a share of the friction.
+        most_load: f64 = 0.5,
+        /// Lengths of the strokes in a travel, relative: irregular, and as long forth as back.
+        strokes: [f64; 10] = [0.5, 1.0, 1.0, 0.87, 0.87, 1.1, 1.1, 0.93, 0.93, 0.5],
+        /// Overshoot of a move that a position loop may show, as a share of the move.
+        most_position_overshoot: f64 = 0.05,
+        /// By how much that may be more than predicted, as a share of the move.
+        position_doubt: f64 = 0.04,
+        /// Counts beyond a target that are no overshoot yet.
+        rounded_counts: f64 = 1.5,
+        /// Counts that are no oscillation yet.
+        rounding_counts: f64 = 2.5,
+        /// Overshoot that a velocity loop may show, as a share of the step.
+        most_overshoot: f64 = 0.235,
+        /// Ripple that a velocity loop may show, as a share of the step.
+        most_ripple: f64 = 0.045,
+        /// Counts that a short move may still go in the last third of the time in which it should be over.
+        tail_counts: f64 = 4.0,
+        /// The same as a share of the step, where that is more.
+        tail_share: f64 = 0.02,
+        /// A step of which that share is more counts than this is long, so that a slow end is no matter of the encoder's.
+        fine_counts: f64 = 8.0,
+        /// Oscillation of a position at rest, beyond what rounding may show, as a share of the step.
+        most_position_ripple: f64 = 0.010,
+        /// Least share of a move, and of a speed, that a loop which works makes.
+        least_move: f64 = 0.2,
+        /// Longest move, as a share of the distance to the farther end of the travel.
+        most_of_room: f64 = 0.6,
+        /// How long the last move is watched when it should be over, in seconds.
+        watch_s: f64 = 0.6,
+        /// Misfit of the closed loop (reduced chi-square) above which nothing that the model says of a margin is believed: springy joints of the bench with a true Ms of
+        /// 2.6 to 3, for which 1.21 and less was predicted, have 2.4.
+        no_model: f64 = 2.0,
+        /// How often the gains may be lowered.
+        most_back_offs: usize = 3,
+        /// Overshoot, as a share of the step, that gains which cannot be lowered further may show where no reading of the duty says more.
+        most_unseen_overshoot: f64 = 0.10,
+        /// Factor by which they are lowered, or the goal that they are designed for.
+        back_off: f64 = 0.7,
+        /// Lower speed of the velocity trial, as a share of full speed.
+        low: f64 = 0.15,
+        /// Higher speed of the velocity trial, as a share of full speed.
+        high: f64 = 0.45,
+        /// How often it goes from one of these speeds to the other at once; a long stay follows.
+        flanks: usize = 5,
+        /// Shortest and longest stay between these flanks, in seconds.
+        flank_s: (f64, f64) = (0.15, 1.2),
+        /// The long stay after them, in seconds.
+        stay_s: f64 = 1.0,
+    }
+}
 
 /// Runs setpoint steps with gains that are already written, and fits the lag. `None` where the record says nothing.
 pub fn measure_lag<L: Law>(
@@ -97,7 +119,7 @@ pub fn measure_lag<L: Law>(
 
 /// Whether an axis stays where it is while it is off, as far as that matters: one that its load moves would leave its travel between two strokes.
 pub(crate) fn stays_put<L: Law>(task: &Task<L>, excitation: Excitation) -> bool {
-    excitation == Excitation::Free || task.plant.load_duty.abs() < MOST_LOAD * task.plant.coulomb_duty
+    excitation == Excitation::Free || task.plant.load_duty.abs() < VERIFY.most_load * task.plant.coulomb_duty
 }
 
 /// How high a step of the speed may be, counts/s, and how long it is watched, s.
@@ -107,9 +129,10 @@ fn step_of<L: Law>(guard: &ExperimentGuard<'_, L>, task: &Task<L>, gains: &Gains
     let limits = [task.plant.drive_limit, task.plant.brake_limit];
     let least = limits.into_iter().flatten().fold(f64::INFINITY, f64::min);
     let eaten = task.plant.coulomb_duty + task.plant.load_duty.abs();
-    let room = BELOW_LIMIT * (least - eaten).min(1.0 - LAG_SPEED - eaten);
-    let jump = room.clamp(LEAST_JUMP, STEP_JUMP);
-    let height = ((jump / (1.0 + p)).clamp(LEAST_STEP, MOST_STEP) * task.qpps).max(2.0 * guard.speed_step());
+    let room = VERIFY.below_limit * (least - eaten).min(1.0 - VERIFY.lag_speed - eaten);
+    let jump = room.clamp(VERIFY.least_jump, VERIFY.step_jump);
+    let height = ((jump / (1.0 + p)).clamp(VERIFY.least_step, VERIFY.most_step) * task.qpps)
+        .max(2.0 * guard.speed_step());
     let lag_s = task.lag.total_s(task.law.tick_s()) + 2.0 * task.law.tick_s();
     (height, 14.0 * lag_s + task.plant.tau_s / (1.0 + p))
 }
@@ -126,10 +149,10 @@ fn run_strokes<L: Law>(
     guard.duty(0.0)?;
     rest(guard, task.plant.tau_s, task.qpps)?;
     let room = guard.room_counts().unwrap_or(width).min(width);
-    let speed = (0.5 * height).min(INSIDE_SHARE * room / dwell_s);
+    let speed = (0.5 * height).min(MARGIN.inside_share * room / dwell_s);
     let from_s = guard.now_s();
     guard.poll(true)?;
-    for (n, share) in STROKES.into_iter().enumerate() {
+    for (n, share) in VERIFY.strokes.into_iter().enumerate() {
         let side = if n % 2 == 0 { 1.0 } else { -1.0 };
         guard.speed(side * speed)?;
         guard.poll_closely_for(share * dwell_s)?;
@@ -151,11 +174,11 @@ fn run_steps<L: Law>(
     rest(guard, task.plant.tau_s, task.qpps)?;
     let from_s = guard.now_s();
     guard.poll(true)?;
-    guard.speed(LAG_SPEED * task.qpps - 0.5 * height)?;
+    guard.speed(VERIFY.lag_speed * task.qpps - 0.5 * height)?;
     guard.poll_for((2.5 * task.plant.tau_s).clamp(0.3, 2.0), true)?;
-    for (n, dwell) in DWELLS.iter().enumerate() {
+    for (n, dwell) in VERIFY.dwells.iter().enumerate() {
         let side = if n % 2 == 0 { 0.5 } else { -0.5 };
-        guard.speed(LAG_SPEED * task.qpps + side * height)?;
+        guard.speed(VERIFY.lag_speed * task.qpps + side * height)?;
         guard.poll_closely_for(dwell_s * dwell)?;
     }
     let to_s = guard.now_s();
@@ -177,8 +200,8 @@ pub fn check_moves<L: Law>(
     try_until_smooth(guard, request, task, report, found.map(|(room, _)| room))?;
     let is_short = |design: Design| {
         may_be_short(task, &design.gains, is_doubtful)
-            || is_unexplained && unexplained_ms(design.ms) > MOST_MS
-            || report.lag.is_some_and(|lag| lag.chi_square > NO_MODEL)
+            || is_unexplained && unexplained_ms(design.ms) > MARGIN.most_ms
+            || report.lag.is_some_and(|lag| lag.chi_square > VERIFY.no_model)
     };
     // Where gains can be raised and were not, since a travel had no room for it or a load moves the axis, nothing has shown their margin.
     let is_unheard = found.is_none() && request.excitation != Excitation::Free && guard.facts.has_duty;
@@ -197,7 +220,7 @@ fn try_until_smooth<L: Law>(
     room: Option<f64>,
 ) -> Result<(), Cause> {
     let mut smoothest: Option<(f64, Design, Measured)> = None;
-    for back_offs in 0..=MOST_BACK_OFFS {
+    for back_offs in 0..=VERIFY.most_back_offs {
         let Some(design) = report.design else { return Ok(()) };
         let measured = match try_design(guard, request, task, report, &design) {
             Ok(measured) => Measured { headroom: room, ..measured },
@@ -215,14 +238,14 @@ fn try_until_smooth<L: Law>(
             continue;
         }
         warn_of_lowering(report);
-        let is_bearable =
-            is_bearable(&measured) && (guard.facts.has_duty || measured.overshoot <= MOST_UNSEEN_OVERSHOOT);
+        let is_bearable = is_bearable(&measured)
+            && (guard.facts.has_duty || measured.overshoot <= VERIFY.most_unseen_overshoot);
         if is_bearable && smoothest.is_none_or(|known| excess < known.0) {
             smoothest = Some((excess, design, measured));
         }
-        if back_offs < MOST_BACK_OFFS {
+        if back_offs < VERIFY.most_back_offs {
             let only_over = request.method == Method::Velocity
-                && measured.ripple <= MOST_RIPPLE
+                && measured.ripple <= VERIFY.most_ripple
                 && measured.duty_rms <= design.noise_duty.max(0.04);
             let softer = if only_over {
                 Design { gains: less_integral(&design.gains), ..design }
@@ -310,7 +333,7 @@ fn with_deadzone<L: Law>(
     measured: &Measured,
     report: &mut Report<L>,
 ) -> Result<Option<Design>, Cause> {
-    let hunts = design.gains.position.is_some() && measured.ripple > MOST_POSITION_RIPPLE;
+    let hunts = design.gains.position.is_some() && measured.ripple > VERIFY.most_position_ripple;
     if !hunts || report.backlash.is_some() || !guard.facts.has_duty {
         return Ok(None);
     }
@@ -332,9 +355,9 @@ pub(crate) fn is_rougher(design: &Design, measured: &Measured) -> bool {
 fn roughness(design: &Design, measured: &Measured) -> f64 {
     let is_position = design.gains.position.is_some();
     let (least_over, doubt, ripple) = if is_position {
-        (MOST_POSITION_OVERSHOOT, POSITION_DOUBT, MOST_POSITION_RIPPLE)
+        (VERIFY.most_position_overshoot, VERIFY.position_doubt, VERIFY.most_position_ripple)
     } else {
-        (MOST_OVERSHOOT, 0.03, MOST_RIPPLE)
+        (VERIFY.most_overshoot, 0.03, VERIFY.most_ripple)
     };
     let active = measured.duty_rms / (1.8 * design.noise_duty).clamp(0.04, 0.10);
     let over = measured.overshoot / (design.score.overshoot + doubt).max(least_over);
@@ -348,7 +371,7 @@ fn is_bearable(measured: &Measured) -> bool {
 
 /// Less integral: with the feed-forward it alone makes a speed go past its setpoint.
 fn less_integral(gains: &Gains) -> Gains {
-    Gains { velocity: Pid { i: BACK_OFF * gains.velocity.i, ..gains.velocity }, ..*gains }
+    Gains { velocity: Pid { i: VERIFY.back_off * gains.velocity.i, ..gains.velocity }, ..*gains }
 }
 
 /// What lowers a design: a position loop is designed anew for a softer goal than what it promised, since gains that are merely scaled
@@ -358,23 +381,22 @@ fn softer<L: Law>(request: &Request<L>, task: &Task<L>, design: &Design) -> Desi
     if request.method == Method::Velocity || request.identification != Identification::Fit {
         return scaled;
     }
-    let goal = Goal { ms: 1.0 + BACK_OFF * (design.ms - 1.0), noise_duty: BACK_OFF * design.noise_duty };
+    let goal = Goal {
+        ms: 1.0 + VERIFY.back_off * (design.ms - 1.0),
+        noise_duty: VERIFY.back_off * design.noise_duty,
+    };
     design_for(request.method, &Task { goal, ..*task }).unwrap_or(scaled)
 }
 
 /// Less gain, and less again of the integral.
 fn lowered(gains: &Gains) -> Gains {
-    let lower = |pid: Pid| Pid { p: pid.p * BACK_OFF, i: pid.i * BACK_OFF * BACK_OFF, d: pid.d * BACK_OFF };
+    let lower = |pid: Pid| Pid {
+        p: pid.p * VERIFY.back_off,
+        i: pid.i * VERIFY.back_off * VERIFY.back_off,
+        d: pid.d * VERIFY.back_off,
+    };
     Gains { velocity: lower(gains.velocity), position: gains.position.map(lower), ..*gains }
 }
-
-/// Speeds of the velocity trial, as shares of full speed: up and down at once, then a long stay.
-const LOW: f64 = 0.15;
-const HIGH: f64 = 0.45;
-const FLANKS: usize = 5;
-/// Shortest and longest stay between the flanks, and the long one, s.
-const FLANK_S: (f64, f64) = (0.15, 1.2);
-const STAY_S: f64 = 1.0;
 
 pub(crate) fn try_velocity<L: Law>(
     guard: &mut ExperimentGuard<'_, L>,
@@ -382,24 +404,24 @@ pub(crate) fn try_velocity<L: Law>(
     gains: &Gains,
 ) -> Result<Measured, Cause> {
     let predicted = velocity_test(&task.plant, &task.law, task.lag, gains, task.qpps);
-    let flank_s = (0.1 + 1.4 * predicted.settling_s).clamp(FLANK_S.0, FLANK_S.1);
-    let (low, high) = (guard.whole_speed(LOW * task.qpps), guard.whole_speed(HIGH * task.qpps));
+    let flank_s = (0.1 + 1.4 * predicted.settling_s).clamp(VERIFY.flank_s.0, VERIFY.flank_s.1);
+    let (low, high) = (guard.whole_speed(VERIFY.low * task.qpps), guard.whole_speed(VERIFY.high * task.qpps));
     guard.speed(low)?;
     guard.poll_for(flank_s.max(1.2 * task.plant.tau_s.min(1.0)), true)?;
     let from_s = guard.now_s();
-    for n in 0..FLANKS {
+    for n in 0..VERIFY.flanks {
         guard.speed(if n % 2 == 0 { high } else { low })?;
         guard.poll_for(flank_s, true)?;
     }
     let stay_s = guard.now_s();
-    guard.poll_for(STAY_S, true)?;
+    guard.poll_for(VERIFY.stay_s, true)?;
     let to_s = guard.now_s();
     guard.duty(0.0)?;
     let record = ClosedLoopRecord::of(guard, from_s - 0.02, to_s);
     let stay: Vec<(f64, f64)> = record.counts.iter().copied().filter(|p| p.0 >= stay_s).collect();
     let duties: Vec<(f64, f64)> = record.duties.iter().copied().filter(|d| d.0 >= stay_s).collect();
     if let (Some(first), Some(last)) = (stay.first(), stay.last())
-        && (last.1 - first.1) < LEAST_MOVE * high * (last.0 - first.0)
+        && (last.1 - first.1) < VERIFY.least_move * high * (last.0 - first.0)
     {
         return Err(Cause::NotVerified);
     }
@@ -432,7 +454,7 @@ pub(crate) fn try_velocity_inside<L: Law>(
     let lag_s = task.lag.total_s(task.law.tick_s()) + 2.0 * task.law.tick_s();
     let dwell_s = (14.0 * lag_s + task.plant.tau_s / (1.0 + gains.velocity.p)).clamp(0.12, 0.4);
     let room = guard.room_counts().unwrap_or(width).min(width);
-    let speed = (INSIDE_SHARE * room / dwell_s).min(MIDDLE * task.qpps);
+    let speed = (MARGIN.inside_share * room / dwell_s).min(VERIFY.middle * task.qpps);
     guard.duty(0.0)?;
     rest(guard, task.plant.tau_s, task.qpps)?;
     let from_s = guard.now_s();
@@ -480,7 +502,7 @@ pub(crate) fn try_position<L: Law>(
     guard.poll(false)?;
     let start = guard.points.last().map_or(0.0, |p| p.counts);
     let (side, room) = farther_end(guard, start);
-    let step = side * step.min(MOST_OF_ROOM * room);
+    let step = side * step.min(VERIFY.most_of_room * room);
     let dwell_s = (0.35 + 1.6 * design.score.settling_s).min(0.5 + 5.0 * task.plant.tau_s).clamp(0.5, 8.0);
     let horizon_s = horizon_s(task.plant.tau_s);
     let dwell_s = dwell_s.max(horizon_s);
@@ -492,10 +514,11 @@ pub(crate) fn try_position<L: Law>(
         guard.position(target, task.qpps as u32)?;
         // A move of an axis without duty is several commands, of which the last is the move.
         let begin = if guard.facts.has_duty { begin } else { guard.now_s() };
-        let watch_s = if n == 3 { WATCH_S } else { 0.0 };
+        let watch_s = if n == 3 { VERIFY.watch_s } else { 0.0 };
         guard.poll_for(dwell_s + watch_s, true)?;
         let points: Vec<Point> = guard.points.iter().copied().filter(|p| p.t > begin).collect();
-        if n == 0 && points.last().is_some_and(|p| (p.counts - start).abs() < LEAST_MOVE * step.abs()) {
+        if n == 0 && points.last().is_some_and(|p| (p.counts - start).abs() < VERIFY.least_move * step.abs())
+        {
             return Err(Cause::NotVerified);
         }
         let moved = judge_move(&points, target, target - from, begin + 0.7 * dwell_s, step.abs());
@@ -504,7 +527,7 @@ pub(crate) fn try_position<L: Law>(
         // A textbook's gains may be slow: less of them would be slower still.
         if request.excitation == Excitation::Free && request.identification == Identification::Fit {
             let tail = tail_counts(&points, (begin + 0.7 * horizon_s, begin + horizon_s), step.abs());
-            worst.ripple = worst.ripple.max(MOST_POSITION_RIPPLE * tail);
+            worst.ripple = worst.ripple.max(VERIFY.most_position_ripple * tail);
         }
         worst.duty_rms = worst.duty_rms.max(moved.duty_rms);
         from = target;
@@ -521,20 +544,20 @@ fn farther_end<L: Law>(guard: &ExperimentGuard<'_, L>, position: f64) -> (f64, f
 
 /// How far the position still goes between two times, in counts over what a move may that is over.
 fn tail_counts(points: &[Point], (from_s, to_s): (f64, f64), step: f64) -> f64 {
-    if TAIL_SHARE * step > FINE_COUNTS {
+    if VERIFY.tail_share * step > VERIFY.fine_counts {
         return 0.0;
     }
     let inside = points.iter().filter(|p| p.t >= from_s && p.t <= to_s);
     let ends =
         inside.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p.counts), h.max(p.counts)));
-    (ends.1 - ends.0).max(0.0) / TAIL_COUNTS.max(TAIL_SHARE * step)
+    (ends.1 - ends.0).max(0.0) / VERIFY.tail_counts.max(VERIFY.tail_share * step)
 }
 
 /// Overshoot of one move, and what goes on after `late_s` when it should be over. `step` is the longest of the moves.
 fn judge_move(points: &[Point], target: f64, moved: f64, late_s: f64, step: f64) -> Measured {
     let over = points.iter().map(|p| (p.counts - target) * moved.signum()).fold(0.0, f64::max);
     // A short move may go past its target by as many counts as a long one.
-    let overshoot = (over - ROUNDED_COUNTS).max(0.0) / moved.abs().max(step).max(1.0);
+    let overshoot = (over - VERIFY.rounded_counts).max(0.0) / moved.abs().max(step).max(1.0);
     let late = || points.iter().filter(|p| p.t > late_s);
     let positions: Vec<f64> = late().map(|p| p.counts).collect();
     let duties: Vec<(f64, f64)> = late().filter_map(|p| p.duty).collect();
@@ -544,6 +567,6 @@ fn judge_move(points: &[Point], target: f64, moved: f64, late_s: f64, step: f64)
         return Measured { overshoot, duty_rms, ..Measured::default() };
     }
     let range = positions.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
-    let ripple = (range.1 - range.0 - ROUNDING_COUNTS).max(0.0) / step;
+    let ripple = (range.1 - range.0 - VERIFY.rounding_counts).max(0.0) / step;
     Measured { overshoot, duty_rms, ripple, headroom: None }
 }

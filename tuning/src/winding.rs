@@ -3,32 +3,43 @@
 //! The inductance cannot be seen in polls: it is over within a millisecond.
 
 use crate::experiment_guard::{Drive, Input, Point};
+use crate::thresholds::thresholds;
 use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};
 
-/// A duty has settled in the winding this long after it was given, s: the ramp of up to 0.1 s per full duty and some.
-const SETTLED_S: f64 = 0.012;
-const RAMP_S: f64 = 0.05;
-/// Readings up to this are no current, A.
-const LEAST_AMPS: f64 = 0.05;
-/// Share of the highest speed by which it may change between the polls around a reading: a current is read later than the counts.
-const STEADY: f64 = 0.06;
-/// Share of the volts that the rest of the model leaves open.
-const MODEL: f64 = 0.01;
-/// Counts over which a speed is taken, and over how many polls on either side at the most.
-const CLEAR_COUNTS: f64 = 25.0;
-const WIDEST_POLLS: usize = 8;
-/// How far currents must lie apart: over their median, and A.
-const SPREAD: (f64, f64) = (0.7, 0.2);
-/// Samples needed, and the widest interval that says anything, over the resistance.
-const LEAST_SAMPLES: usize = 12;
-const WIDEST: f64 = 0.5;
-/// What does not average out: what the model leaves open, and the offset of a current reading, A.
-const MODEL_SHARE: f64 = 0.08;
-const OFFSET_AMPS: f64 = 0.01;
-/// Rounding of a reading of the current, A, and of the battery, V, as standard deviations.
-const ROUNDING_VOLTS: f64 = 0.03;
-const ROUNDING_AMPS: f64 = 0.003;
+thresholds! {
+    /// The fit of resistance and back-EMF: which samples count, and what is believed of them.
+    WINDING: Thresholds {
+        /// How long after the end of its ramp a duty has settled in the winding, in seconds.
+        settled_s: f64 = 0.012,
+        /// How long the ramp of a duty takes per full duty, in seconds: up to 0.1 s from one end to the other.
+        ramp_s: f64 = 0.05,
+        /// Readings below this are no current, in amperes.
+        least_amps: f64 = 0.05,
+        /// Share of the highest speed by which the speed may change between the polls around a reading: a current is read later than the counts.
+        steady: f64 = 0.06,
+        /// Standard deviation of what the rest of the model leaves open, as a share of the volts.
+        model: f64 = 0.01,
+        /// Counts over which a speed is taken.
+        clear_counts: f64 = 25.0,
+        /// Most polls on either side over which it is taken.
+        widest_polls: usize = 8,
+        /// How far currents must lie apart: as a multiple of their median, and at the least in amperes.
+        spread: (f64, f64) = (0.7, 0.2),
+        /// Fewest samples from which a resistance is told.
+        least_samples: usize = 12,
+        /// Half of the widest interval that says anything, as a share of the resistance.
+        widest: f64 = 0.5,
+        /// What the model leaves open and does not average out, as a share of the resistance.
+        model_share: f64 = 0.08,
+        /// Offset of a current reading, which does not average out either, in amperes.
+        offset_amps: f64 = 0.01,
+        /// Standard deviation of a battery reading from its rounding, in volts.
+        rounding_volts: f64 = 0.03,
+        /// Standard deviation of the volts from the rounding of the current, in volts per ampere.
+        rounding_amps: f64 = 0.003,
+    }
+}
 
 /// The winding as a run showed it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -92,7 +103,7 @@ struct Row {
 /// # Errors
 /// Why it is not known: no currents, or ones that do not distinguish R.
 pub fn winding_of(points: &[Point], drives: &[Drive]) -> Result<Winding, WindingUnknown> {
-    let has_current = |point: &Point| point.amps.is_some_and(|amps| amps.abs() >= LEAST_AMPS);
+    let has_current = |point: &Point| point.amps.is_some_and(|amps| amps.abs() >= WINDING.least_amps);
     if !points.iter().any(has_current) {
         return Err(WindingUnknown::NoCurrents);
     }
@@ -100,8 +111,8 @@ pub fn winding_of(points: &[Point], drives: &[Drive]) -> Result<Winding, Winding
     let highest = points.windows(2).map(|pair| speed_of(&pair[0], &pair[1]).abs()).fold(0.0, f64::max);
     let inside = 1..points.len().saturating_sub(2);
     let rows: Vec<Row> =
-        inside.filter_map(|n| row_at(points, drives, n, &battery, STEADY * highest)).collect();
-    if rows.len() < LEAST_SAMPLES {
+        inside.filter_map(|n| row_at(points, drives, n, &battery, WINDING.steady * highest)).collect();
+    if rows.len() < WINDING.least_samples {
         return Err(WindingUnknown::TooFew);
     }
     if !differ(&rows) {
@@ -122,9 +133,9 @@ pub fn winding_of(points: &[Point], drives: &[Drive]) -> Result<Winding, Winding
     let freedom = (rows.len() - 2) as f64;
     let variance = (rows.iter().map(misfit).sum::<f64>() / freedom).max(1.0);
     let mean_amps = rows.iter().map(|row| row.amps).sum::<f64>() / rows.len() as f64;
-    let systematic = ohms * (MODEL_SHARE + OFFSET_AMPS / mean_amps);
+    let systematic = ohms * (WINDING.model_share + WINDING.offset_amps / mean_amps);
     let interval_ohms = (1.96 * (variance * inverse[(0, 0)]).sqrt()).hypot(systematic);
-    let is_known = ohms > 0.0 && back_emf > 0.0 && interval_ohms < WIDEST * ohms;
+    let is_known = ohms > 0.0 && back_emf > 0.0 && interval_ohms < WINDING.widest * ohms;
     let winding = Winding { ohms, interval_ohms, volts_per_count_per_s: back_emf, samples: rows.len() };
     is_known.then_some(winding).ok_or(WindingUnknown::Vague)
 }
@@ -134,14 +145,16 @@ fn differ(rows: &[Row]) -> bool {
     let mut amps: Vec<f64> = rows.iter().map(|row| row.amps).collect();
     amps.sort_by(f64::total_cmp);
     let at = |share: f64| amps[(share * (amps.len() - 1) as f64) as usize];
-    at(0.95) - at(0.05) > (SPREAD.0 * at(0.5)).max(SPREAD.1)
+    at(0.95) - at(0.05) > (WINDING.spread.0 * at(0.5)).max(WINDING.spread.1)
 }
 
 impl Row {
     /// One over the standard deviation of its volts.
     fn weight(&self) -> f64 {
-        1.0 / (ROUNDING_VOLTS.powi(2) + (MODEL * self.volts).powi(2) + (ROUNDING_AMPS * self.amps).powi(2))
-            .sqrt()
+        1.0 / (WINDING.rounding_volts.powi(2)
+            + (WINDING.model * self.volts).powi(2)
+            + (WINDING.rounding_amps * self.amps).powi(2))
+        .sqrt()
     }
 }
 
@@ -186,32 +199,34 @@ fn speed_of(a: &Point, b: &Point) -> f64 {
 /// A poll under a settled duty that drives the way the motor turns, and a speed that hardly changes, with its current.
 fn row_at(points: &[Point], drives: &[Drive], n: usize, battery: &Battery, steady: f64) -> Option<Row> {
     let point = &points[n];
-    let amps = point.amps.filter(|amps| amps.abs() >= LEAST_AMPS && !point.limited)?.abs();
+    let amps = point.amps.filter(|amps| amps.abs() >= WINDING.least_amps && !point.limited)?.abs();
     let at = drives.partition_point(|drive| drive.t <= point.t).checked_sub(1)?;
     let Input::Duty(duty) = drives[at].input else { return None };
     let last = at.checked_sub(1).map_or(0.0, |at| match drives[at].input {
         Input::Duty(duty) => duty,
         Input::Speed(_) | Input::Position(..) => 0.0,
     });
-    let steady_since = drives[at].t + SETTLED_S + RAMP_S * (duty - last).abs();
+    let steady_since = drives[at].t + WINDING.settled_s + WINDING.ramp_s * (duty - last).abs();
     let next = drives.get(at + 1).map_or(f64::INFINITY, |drive| drive.t);
     // Over as many polls as it takes for the rounding of the counts to be small; speed must not matter beside it.
-    let widths = 1..=WIDEST_POLLS.min(n).min(points.len() - 1 - n);
+    let widths = 1..=WINDING.widest_polls.min(n).min(points.len() - 1 - n);
     let ends = widths.map(|width| (&points[n - width], &points[n + width]));
-    let inside = ends.take_while(|(before, after)| before.t >= steady_since - SETTLED_S && after.t <= next);
+    let inside =
+        ends.take_while(|(before, after)| before.t >= steady_since - WINDING.settled_s && after.t <= next);
     let mut last_ends = None;
     for (before, after) in inside {
         last_ends = Some((before, after));
-        if (after.counts - before.counts).abs() >= CLEAR_COUNTS {
+        if (after.counts - before.counts).abs() >= WINDING.clear_counts {
             break;
         }
     }
     let (before, after) = last_ends?;
     let moved = (after.counts - before.counts).abs();
     // No count for a moment is no standstill.
-    let around = &points[n.saturating_sub(WIDEST_POLLS)..(n + WIDEST_POLLS + 1).min(points.len())];
+    let around =
+        &points[n.saturating_sub(WINDING.widest_polls)..(n + WINDING.widest_polls + 1).min(points.len())];
     let stands = around.iter().all(|p| (p.counts - point.counts).abs() < 1.0);
-    if !stands && moved < CLEAR_COUNTS {
+    if !stands && moved < WINDING.clear_counts {
         return None;
     }
     let speed = speed_of(before, after);

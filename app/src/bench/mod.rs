@@ -10,6 +10,7 @@ pub mod figure;
 pub mod graph;
 pub mod headless;
 pub mod rig;
+pub mod sensitivity;
 pub mod spread;
 pub mod tap;
 pub mod tuning;
@@ -78,7 +79,7 @@ fn run(args: &BenchArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
         say("This is a debug build: its figures say little. Use cargo run --release -p brushwork -- bench …");
     }
     if args.what.contains(&BenchArg::Tuning) {
-        return tuning::run(args, out);
+        return tuning::run(args, out, interrupt);
     }
     let effort = if args.quick { QUICK } else { FULL };
     let mut figures = Vec::new();

@@ -4,8 +4,10 @@ use brushwork_tuning_bench::faults::FaultRow;
 use brushwork_tuning_bench::table::{Row, Table};
 use brushwork_tuning_bench::ways::WayRow;
 
-use super::arguments::BenchArgs;
+use super::arguments::{BenchArgs, Scale};
+use super::sensitivity;
 use brushwork_cli::Exit;
+use brushwork_cli::interrupt::Interrupt;
 use brushwork_cli::new_file::NewFile;
 use brushwork_cli::output::{Output, OutputError, say};
 
@@ -31,12 +33,19 @@ const WAY_HEADS: [&str; 9] =
     ["by", "loop", "", "found %", "no warning %", "accept %", "Ms > 2 %", "Ms > 1.8, no warning %", "s"];
 
 /// Runs the benchmark, or writes its optima.
-pub fn run(args: &BenchArgs, out: &mut Output) -> Exit {
+pub fn run(args: &BenchArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
     if args.plants == 0 {
         say("A benchmark needs at least one motor: use --plants 200.");
         return Exit::Usage;
     }
-    let judge = args.family;
+    if let Some(Err(why)) = args.scale.as_ref().map(Scale::apply) {
+        say(format!("{why}."));
+        return Exit::Usage;
+    }
+    if !args.sensitivity.is_empty() {
+        return sensitivity::run(args, out, interrupt);
+    }
+    let (_, judge) = args.family;
     if args.faults {
         let rows = (judge.faults)(args.seed, args.plants);
         let printed = if args.json { out.json(&rows) } else { print_faults(&rows, out) };

@@ -8,5 +8,6 @@ mod licences;
 mod limited;
 mod map;
 mod messages;
+mod thresholds;
 mod tidy;
 mod words;

@@ -11,6 +11,8 @@ macro_rules! families {
 
 families!(mcp, motion_mind, suprmotr);
 
+pub use brushwork_tuning::sensitivity;
+
 mod bounds;
 pub mod faults;
 pub mod judge;

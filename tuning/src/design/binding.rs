@@ -5,6 +5,7 @@ use super::task::Task;
 use crate::law::Law;
 use crate::linear::LoopPlant;
 use crate::model::Gains;
+use crate::thresholds::thresholds;
 
 /// The bound that is met first when gains go up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,11 +31,17 @@ pub struct Limit {
     pub used: f64,
 }
 
-/// Gains so much higher are looked at: a bound that they break was near.
-const NEAR: f64 = 1.25;
-/// What the sensitivities with the worst lag and with half the inertia may be, over that of the goal.
-const WORST_MS: f64 = 1.12;
-const LIGHT_MS: f64 = 1.4;
+thresholds! {
+    /// When a bound of the design counts as the one that holds the gains back.
+    BINDING: Thresholds {
+        /// Factor by which all gains are raised: a bound that they then break was near.
+        near: f64 = 1.25,
+        /// Sensitivity that a design may have with the worst lag, as a multiple of that of its goal.
+        worst_ms: f64 = 1.12,
+        /// Sensitivity that it may have with half the inertia, as a multiple of that of its goal.
+        light_ms: f64 = 1.4,
+    }
+}
 
 /// Which bound of `task` is met first when all of `gains` are raised by a quarter: the one that is broken by the most. `None` where none
 /// is: stiffer gains would only overshoot more.
@@ -55,8 +62,8 @@ fn shares<L: Law>(task: &Task<L>, loops: &Loops, gains: &Gains) -> [(Bound, f64)
     let integral = 1.01 * gains.velocity.i * task.least_integral_s / gains.velocity.p.max(f64::MIN_POSITIVE);
     [
         (Bound::Sensitivity, nominal.ms / task.goal.ms),
-        (Bound::Lag, ms(&loops.worst) / (WORST_MS * task.goal.ms)),
-        (Bound::LightLoad, ms(&loops.light) / (LIGHT_MS * task.goal.ms)),
+        (Bound::Lag, ms(&loops.worst) / (BINDING.worst_ms * task.goal.ms)),
+        (Bound::LightLoad, ms(&loops.light) / (BINDING.light_ms * task.goal.ms)),
         (Bound::DutyNoise, nominal.noise_duty * task.noise_factor / task.goal.noise_duty),
         (Bound::Backlash, integral),
     ]
@@ -65,7 +72,7 @@ fn shares<L: Law>(task: &Task<L>, loops: &Loops, gains: &Gains) -> [(Bound, f64)
 fn raised(gains: &Gains) -> Gains {
     let mut raised = *gains;
     for pid in [Some(&mut raised.velocity), raised.position.as_mut()].into_iter().flatten() {
-        (pid.p, pid.i, pid.d) = (NEAR * pid.p, NEAR * pid.i, NEAR * pid.d);
+        (pid.p, pid.i, pid.d) = (BINDING.near * pid.p, BINDING.near * pid.i, BINDING.near * pid.d);
     }
     raised
 }

@@ -3,11 +3,11 @@
 //! An unstable loop can have a small sensitivity, so each search starts at a gain near zero, where the loop is stable, goes up
 //! and stops at the first bound it meets.
 
-mod binding;
-mod position;
-mod search;
-mod task;
-mod velocity;
+pub(crate) mod binding;
+pub(crate) mod position;
+pub(crate) mod search;
+pub(crate) mod task;
+pub(crate) mod velocity;
 
 pub use binding::{Bound, Limit, limit};
 pub(crate) use position::{deadzone, direct_gains};

@@ -5,34 +5,51 @@ use super::task::{Design, Goal, Task};
 use crate::law::Law;
 use crate::model::{Gains, Lag, Pid};
 use crate::score::{POSITION_OVERSHOOT, position_step};
+use crate::thresholds::thresholds;
 use crate::ticks::position_test_and_end;
 
-/// Overshoot beyond which the cost jumps.
-const OVERSHOOT_CAP: f64 = 0.06;
-/// Deviation of the duty beyond which a move is not over yet when it should be; the cost jumps there too.
-const LATE_DUTY_CAP: f64 = 0.08;
-/// Distance gone in the last third of a move or after a load beyond which it is not over yet, over the step and in counts at the least: what
-/// creeps for so long sticks and slips in the backlash of a real machine. How dear it is, and the most it can cost.
-const LATE_DISTANCE_CAP: f64 = 0.01;
-const LATE_COUNTS_CAP: f64 = 2.0;
-const LATE_DISTANCE_COST: f64 = 0.2;
-const LATE_DISTANCE_MOST: f64 = 0.8;
-/// Shares of the highest gain tried.
-const SHARES: [f64; 6] = [1.0, 0.85, 0.7, 0.5, 0.35, 0.2];
-/// Derivative times tried, as shares of the time constant of the motor.
-const DERIVATIVE_TIMES: [f64; 14] = [0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2, 1.5];
-/// Share of the noise's budget that a cascade gets: at rest it chatters about the edge of a count, which is more than rounding at random.
-const AT_REST: f64 = 0.9;
-/// Integral times of the inner loop tried.
-const INNER_TIMES: usize = 8;
-/// Shares of the highest inner gain tried.
-const INNER_SHARES: [f64; 4] = [1.0, 0.7, 0.4, 0.2];
-/// Dead zone around the backlash of the mechanics, and of an integral that would hunt without one, counts.
-const BACKLASH_MARGIN: f64 = 2.0;
-const INTEGRAL_DEADZONE: f64 = 1.0;
-/// Share of the lag that no model has which is left to be designed for where gains are raised on the machine: with none of it 2 of 96 PD and PID loops of the bench
-/// were called tuned at a true Ms of 1.9, with all of it the cost is a seventh higher in the median.
-const RAISED_SHARE: f64 = 0.5;
+thresholds! {
+    /// How the gains of a position are bounded and searched.
+    POSITION: Thresholds {
+        /// Overshoot beyond which the cost jumps, as a share of the step.
+        overshoot_cap: f64 = 0.06,
+        /// Deviation of the duty, as a share of full, beyond which a move is not over yet when it should be; the cost jumps there too.
+        late_duty_cap: f64 = 0.08,
+        /// Distance gone in the last third of a move or after a load beyond which it is not over yet, as a share of the step: what creeps for so long sticks and slips in
+        /// the backlash of a real machine.
+        late_distance_cap: f64 = 0.01,
+        /// The least that this distance can be, in counts.
+        late_counts_cap: f64 = 2.0,
+        /// What each further such distance adds to the cost, as a share of it.
+        late_distance_cost: f64 = 0.2,
+        /// The most that creeping can add to the cost, as a share of it.
+        late_distance_most: f64 = 0.8,
+        /// Shares of the highest gain tried.
+        shares: [f64; 6] = [1.0, 0.85, 0.7, 0.5, 0.35, 0.2],
+        /// Derivative times tried, as shares of the time constant of the motor.
+        derivative_times: [f64; 14] = [0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2, 1.5],
+        /// Share of the allowed noise of the duty that a cascade gets: at rest it chatters about the edge of a count, which is more than rounding at random.
+        at_rest: f64 = 0.9,
+        /// How many integral times of the inner loop are tried.
+        inner_times: usize = 8,
+        /// Shares of the highest inner gain tried.
+        inner_shares: [f64; 4] = [1.0, 0.7, 0.4, 0.2],
+        /// Counts by which the dead zone is wider than the backlash of the mechanics.
+        backlash_margin: f64 = 2.0,
+        /// Least dead zone of an integral, which would hunt without one, in counts.
+        integral_deadzone: f64 = 1.0,
+        /// Share of the lag that no model has which is left to be designed for where gains are raised on the machine: with none of it 2 of 96 PD and PID loops of the
+        /// bench were called tuned at a true Ms of 1.9, with all of it the cost is a seventh higher in the median.
+        raised_share: f64 = 0.5,
+        /// How many rounds the refinement has; the step is smaller in each.
+        rounds: usize = 4,
+        /// How many steps coarse gains go on by at the most.
+        most_steps: usize = 24,
+        /// Factor by which all gains are lowered where no step around them keeps their bounds.
+        softer: f64 = 0.8,
+    }
+}
+
 /// How gains are refined.
 struct Refinement {
     /// The gains that are moved together.
@@ -62,11 +79,6 @@ const CASCADE: Refinement = Refinement {
     first_step: 1.2,
     repeats: 1,
 };
-/// How often the step is made smaller.
-const ROUNDS: usize = 4;
-/// How often coarse gains go on by a step at the most, and how much softer they become where none keeps its bounds.
-const MOST_STEPS: usize = 24;
-const SOFTER: f64 = 0.8;
 
 /// `v = P e + D de/dt`, duty = v / QPPS: the simple PD system.
 #[must_use]
@@ -84,7 +96,7 @@ pub fn design_pd<L: Law>(task: &Task<L>) -> Option<Design> {
 pub fn design_pid<L: Law>(task: &Task<L>) -> Option<Design> {
     let task = &direct(task);
     let loops = Loops::new(task);
-    let base = Gains { deadzone_counts: deadzone(task).max(INTEGRAL_DEADZONE), ..Gains::default() };
+    let base = Gains { deadzone_counts: deadzone(task).max(POSITION.integral_deadzone), ..Gains::default() };
     // The integral takes phase: the PD below it is kept a little softer. Where friction and load are small none is needed.
     let inner = Task { goal: Goal { ms: 1.0 + 0.8 * (task.goal.ms - 1.0), ..task.goal }, ..*task };
     let plain = search_pd(&loops, task, base);
@@ -132,7 +144,7 @@ pub(crate) fn direct_gains<L: Law>(task: &Task<L>, pid: Pid) -> Gains {
         return gains;
     }
     let max_integral = sum_bounds(task, &pid).first().copied().unwrap_or_default();
-    Gains { max_integral, deadzone_counts: gains.deadzone_counts.max(INTEGRAL_DEADZONE), ..gains }
+    Gains { max_integral, deadzone_counts: gains.deadzone_counts.max(POSITION.integral_deadzone), ..gains }
 }
 
 /// The best of the steps around gains that registers round, going on from step to step as long as that pays; the same where they are fine. `None`
@@ -147,7 +159,7 @@ fn stepped<L: Law>(loops: &Loops, task: &Task<L>, best: Candidate, has_integral:
     };
     let mut found = Some(candidate(task, best.gains)).filter(|rounded| is_allowed(&rounded.gains));
     let mut at = best.gains;
-    for _ in 0..MOST_STEPS {
+    for _ in 0..POSITION.most_steps {
         let before = found.as_ref().map_or(f64::INFINITY, |best| best.cost);
         for gains in task.law.steps_around(&at, task.qpps) {
             if is_allowed(&gains) {
@@ -160,7 +172,7 @@ fn stepped<L: Law>(loops: &Loops, task: &Task<L>, best: Candidate, has_integral:
             // Softer all over, as long as there is something to make softer.
             None => {
                 let position = at.position?;
-                let softer = |gain: f64| SOFTER * gain;
+                let softer = |gain: f64| POSITION.softer * gain;
                 let pid = Pid { p: softer(position.p), i: softer(position.i), d: softer(position.d) };
                 at = Gains { position: Some(pid), ..at };
             }
@@ -173,26 +185,26 @@ fn stepped<L: Law>(loops: &Loops, task: &Task<L>, best: Candidate, has_integral:
 #[must_use]
 pub fn design_piv<L: Law>(task: &Task<L>) -> Option<Design> {
     let loops = Loops::new(task);
-    let quiet = Goal { noise_duty: AT_REST * task.goal.noise_duty, ..task.goal };
+    let quiet = Goal { noise_duty: POSITION.at_rest * task.goal.noise_duty, ..task.goal };
     let task = &Task { goal: quiet, ..*task };
     let inner = Task { goal: Goal { ms: 1.05 * quiet.ms, ..quiet }, ..*task };
     let lag_s = task.lag.total_s(task.law.tick_s()) + 1.5 * task.law.tick_s();
     let shortest = (1.5 * lag_s).max(task.least_integral_s);
     let longest = (12.0 * task.plant.tau_s).max(40.0 * lag_s).max(1.5 * shortest);
     let mut best = None;
-    for n in 0..INNER_TIMES {
-        let time_s = shortest * (longest / shortest).powf(n as f64 / (INNER_TIMES - 1) as f64);
+    for n in 0..POSITION.inner_times {
+        let time_s = shortest * (longest / shortest).powf(n as f64 / (POSITION.inner_times - 1) as f64);
         let pi = |p: f64| Gains {
             velocity: Pid { p, i: p / time_s, d: 0.0 },
             deadzone_counts: deadzone(task),
             ..Gains::default()
         };
         let Some(top) = ascend(&loops, &inner, 400.0, pi) else { continue };
-        for share in INNER_SHARES {
+        for share in POSITION.inner_shares {
             let with_position =
                 |p: f64| Gains { position: Some(Pid { p, i: 0.0, d: 0.0 }), ..pi(top * share) };
             let Some(highest) = ascend(&loops, task, 300.0, with_position) else { continue };
-            for outer in SHARES {
+            for outer in POSITION.shares {
                 best = better(best, candidate(task, with_position(highest * outer)));
             }
         }
@@ -203,11 +215,11 @@ pub fn design_piv<L: Law>(task: &Task<L>) -> Option<Design> {
 
 fn search_pd<L: Law>(loops: &Loops, task: &Task<L>, base: Gains) -> Option<Candidate> {
     let mut best = None;
-    for times in DERIVATIVE_TIMES {
+    for times in POSITION.derivative_times {
         let time_s = times * task.plant.tau_s;
         let pd = |p: f64| Gains { position: Some(Pid { p, i: 0.0, d: p * time_s }), ..base };
         let Some(highest) = ascend(loops, task, 2_000.0, pd) else { continue };
-        for share in SHARES {
+        for share in POSITION.shares {
             best = better(best, candidate(task, pd(highest * share)));
         }
     }
@@ -217,7 +229,7 @@ fn search_pd<L: Law>(loops: &Loops, task: &Task<L>, base: Gains) -> Option<Candi
 /// Small steps in gains, one by one and together, as long as they pay.
 fn refine<L: Law>(loops: &Loops, task: &Task<L>, mut best: Candidate, how: &Refinement) -> Candidate {
     let mut step = how.first_step;
-    for _ in 0..ROUNDS {
+    for _ in 0..POSITION.rounds {
         for (moved, by) in how.moves.iter().flat_map(|moved| [(*moved, step), (*moved, 1.0 / step)]) {
             // What pays once may pay again.
             for _ in 0..how.repeats {
@@ -271,25 +283,26 @@ impl Move {
 fn candidate<L: Law>(task: &Task<L>, gains: Gains) -> Candidate {
     let gains = task.law.rounded(&gains, task.qpps);
     let (score, end) = position_test_and_end(&task.plant, &task.law, task.lag, &gains, task.qpps);
-    let excess = (score.overshoot - OVERSHOOT_CAP).max(0.0)
-        + 0.5 * (end.duty.0.max(end.duty.1) - LATE_DUTY_CAP).max(0.0);
+    let excess = (score.overshoot - POSITION.overshoot_cap).max(0.0)
+        + 0.5 * (end.duty.0.max(end.duty.1) - POSITION.late_duty_cap).max(0.0);
     let step = position_step(task.plant.gain_counts_per_s, task.plant.tau_s);
-    let allowed = (LATE_DISTANCE_CAP * step).max(LATE_COUNTS_CAP);
-    let creeping = (LATE_DISTANCE_COST * (end.range_counts / allowed - 1.0)).clamp(0.0, LATE_DISTANCE_MOST);
+    let allowed = (POSITION.late_distance_cap * step).max(POSITION.late_counts_cap);
+    let creeping = (POSITION.late_distance_cost * (end.range_counts / allowed - 1.0))
+        .clamp(0.0, POSITION.late_distance_most);
     let cost = score.cost(POSITION_OVERSHOOT) * (1.0 + 50.0 * excess) * (1.0 + creeping);
     Candidate { gains, score, cost }
 }
 
 /// Within the backlash nothing can be held; beyond it two counts keep the rounding quiet.
 pub(crate) fn deadzone<L: Law>(task: &Task<L>) -> f64 {
-    if task.backlash_counts > 0.0 { (task.backlash_counts + BACKLASH_MARGIN).round() } else { 0.0 }
+    if task.backlash_counts > 0.0 { (task.backlash_counts + POSITION.backlash_margin).round() } else { 0.0 }
 }
 
 /// The task of a loop that acts on the duty directly: its sensitivity is bounded with some more lag, for the winding and a springy
 /// shaft, which a difference of one tick reaches where a filtered speed does not. Where gains are raised on the machine, that finds most of it.
 fn direct<L: Law>(task: &Task<L>) -> Task<L> {
     let facts = task.law.facts();
-    let share = if facts.has_duty { RAISED_SHARE } else { 1.0 };
+    let share = if facts.has_duty { POSITION.raised_share } else { 1.0 };
     let delay_ticks = task.worst_lag.delay_ticks + share * facts.unmodelled_ticks;
     Task { worst_lag: Lag { delay_ticks, ..task.worst_lag }, ..*task }
 }

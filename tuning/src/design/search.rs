@@ -5,6 +5,15 @@ use crate::law::Law;
 use crate::linear::{DiscretePlant, LoopPlant, Margins};
 use crate::model::{Gains, PlantModel};
 use crate::score::Score;
+use crate::thresholds::thresholds;
+
+thresholds! {
+    /// How gains go up from near zero.
+    SEARCH: Thresholds {
+        /// Factor from one try to the next, before the last step is halved.
+        ratio: f64 = 1.25,
+    }
+}
 
 /// The loops a design is checked with: as likely, with the worst lag, with half the inertia.
 pub(super) struct Loops {
@@ -54,13 +63,12 @@ pub(super) fn ascend<L: Law>(
     top: f64,
     gains: impl Fn(f64) -> Gains,
 ) -> Option<f64> {
-    const RATIO: f64 = 1.25;
     let mut factor = top * 1e-4;
     loops.within(task, &gains(factor))?;
-    while factor < top && loops.within(task, &gains(factor * RATIO)).is_some() {
-        factor *= RATIO;
+    while factor < top && loops.within(task, &gains(factor * SEARCH.ratio)).is_some() {
+        factor *= SEARCH.ratio;
     }
-    let (mut low, mut high) = (factor, factor * RATIO);
+    let (mut low, mut high) = (factor, factor * SEARCH.ratio);
     for _ in 0..4 {
         let middle = (low * high).sqrt();
         if loops.within(task, &gains(middle)).is_some() { low = middle } else { high = middle }

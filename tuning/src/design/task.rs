@@ -3,10 +3,23 @@
 use crate::law::Law;
 use crate::model::{Gains, Lag, PlantModel};
 use crate::score::Score;
+use crate::thresholds::thresholds;
 use serde::{Deserialize, Serialize};
 
-/// Duty noise that a design of the default level may have.
-const USUAL_NOISE: f64 = 0.08;
+thresholds! {
+    /// What a level asks of a design.
+    TASK: Thresholds {
+        /// Noise of the duty that a design of the default level 50 may have, as a share of full duty.
+        usual_noise: f64 = 0.08,
+        /// Noise that level 100 may have, as a multiple of that of level 0: half the usual noise at 0, twice as much at 100.
+        noise_ratio: f64 = 4.0,
+        /// Maximum sensitivity (Ms) of level 0. With 2.0 at level 100 that is the range that Astrom and Murray call reasonable ("Feedback Systems", 2nd edition, section
+        /// 10.3).
+        softest_ms: f64 = 1.2,
+        /// What each step of the level adds to the maximum sensitivity.
+        ms_per_level: f64 = 0.008,
+    }
+}
 
 /// How far a design may go.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -22,12 +35,15 @@ impl Goal {
     #[must_use]
     pub fn of_level(level: f64) -> Self {
         let level = level.clamp(0.0, 100.0);
-        Self { ms: 1.2 + 0.008 * level, noise_duty: USUAL_NOISE * 4.0_f64.powf((level - 50.0) / 100.0) }
+        Self {
+            ms: TASK.softest_ms + TASK.ms_per_level * level,
+            noise_duty: TASK.usual_noise * TASK.noise_ratio.powf((level - 50.0) / 100.0),
+        }
     }
 
     /// How much stiffer than the default a level is in all that has no bound of its own: 0.7 to 1.4.
     pub(crate) fn pace(&self) -> f64 {
-        (self.noise_duty / USUAL_NOISE).sqrt()
+        (self.noise_duty / TASK.usual_noise).sqrt()
     }
 }
 

@@ -5,15 +5,22 @@ use super::task::{Design, Task};
 use crate::law::Law;
 use crate::model::{Gains, Pid, PlantModel};
 use crate::score::{Score, VELOCITY_OVERSHOOT};
+use crate::thresholds::thresholds;
 use crate::ticks::velocity_test;
 
-/// Integral times tried.
-const TIMES: usize = 16;
-/// Shares of the highest gain tried.
-const SHARES: [f64; 6] = [1.0, 0.85, 0.7, 0.5, 0.3, 0.15];
-/// Rounds and first step of the refinement.
-const ROUNDS: usize = 4;
-const FIRST_STEP: f64 = 1.25;
+thresholds! {
+    /// How the gains of a velocity loop are searched.
+    VELOCITY: Thresholds {
+        /// How many integral times are tried.
+        times: usize = 16,
+        /// Shares of the highest gain tried.
+        shares: [f64; 6] = [1.0, 0.85, 0.7, 0.5, 0.3, 0.15],
+        /// How many rounds the refinement has; the step is smaller in each.
+        rounds: usize = 4,
+        /// Factor of a gain in the first round.
+        first_step: f64 = 1.25,
+    }
+}
 
 /// The gains that respond best within the goal; `None` where not even small gains keep it.
 #[must_use]
@@ -23,10 +30,10 @@ pub fn design_velocity<L: Law>(task: &Task<L>) -> Option<Design> {
     let shortest = (1.5 * lag_s).max(task.least_integral_s);
     let longest = (12.0 * task.plant.tau_s).max(40.0 * lag_s).max(1.5 * shortest);
     let mut best = None;
-    for n in 0..TIMES {
-        let time_s = shortest * (longest / shortest).powf(n as f64 / (TIMES - 1) as f64);
+    for n in 0..VELOCITY.times {
+        let time_s = shortest * (longest / shortest).powf(n as f64 / (VELOCITY.times - 1) as f64);
         let Some(top) = ascend(&loops, task, 400.0, |p| pi(p, time_s)) else { continue };
-        for share in SHARES {
+        for share in VELOCITY.shares {
             best = better(best, candidate(task, pi(top * share, time_s)));
         }
     }
@@ -35,8 +42,8 @@ pub fn design_velocity<L: Law>(task: &Task<L>) -> Option<Design> {
 }
 
 fn refine<L: Law>(loops: &Loops, task: &Task<L>, mut best: Candidate) -> Candidate {
-    let mut step = FIRST_STEP;
-    for _ in 0..ROUNDS {
+    let mut step = VELOCITY.first_step;
+    for _ in 0..VELOCITY.rounds {
         for (by_p, by_i) in [(step, 1.0), (1.0 / step, 1.0), (1.0, step), (1.0, 1.0 / step), (step, step)] {
             let v = best.gains.velocity;
             let gains = Gains { velocity: Pid { p: v.p * by_p, i: v.i * by_i, d: 0.0 }, ..best.gains };

@@ -9,30 +9,42 @@ use crate::diagnosis::why_unmoved;
 use crate::experiment_guard::ExperimentGuard;
 use crate::law::Law;
 use crate::model::PlantModel;
+use crate::thresholds::thresholds;
 use serde::{Deserialize, Serialize};
 
-/// Directions of the pushes: after each pair comes a reversal.
-const PUSHES: [f64; 7] = [1.0, 1.0, -1.0, -1.0, 1.0, 1.0, -1.0];
-/// Duty above the starting one, as a share of it and at the least.
-const ABOVE: (f64, f64) = (0.3, 0.03);
-/// How far a push should go, as seconds of full speed, in counts at the least, and as a share of the room.
-const PUSH_S: f64 = 0.006;
-const PUSH_COUNTS: f64 = 18.0;
-const ROOM_SHARE: f64 = 0.12;
-/// Longest push, s, and how long the motor may take to rest after one, in time constants and s.
-const LONGEST_PUSH_S: f64 = 0.35;
-const REST: (f64, f64) = (4.0, 0.08);
-const LONGEST_REST_S: f64 = 1.0;
-/// Motors slower than this are still moving when they are looked at, s.
-const SLOWEST_S: f64 = 0.3;
-/// A push moves the axis by this at the least, counts.
-const LEAST_DISTANCE_COUNTS: f64 = 2.0;
-/// Least backlash that is reported, counts, and how sure it must be, in standard errors.
-const LEAST_COUNTS: f64 = 1.5;
-const SURE: f64 = 3.0;
-/// Share of the push that it must be, and the standard error that rounding leaves, counts.
-const LEAST_SHARE: f64 = 0.04;
-const LEAST_ERROR_COUNTS: f64 = 0.4;
+thresholds! {
+    /// How play is measured: small pushes this way and that from rest.
+    BACKLASH: Thresholds {
+        /// Directions of the pushes, 1 or -1: after each pair comes a reversal.
+        pushes: [f64; 7] = [1.0, 1.0, -1.0, -1.0, 1.0, 1.0, -1.0],
+        /// Duty of a push above the starting one: as a share of it, and at the least as a share of full.
+        above: (f64, f64) = (0.3, 0.03),
+        /// How far a push should go: the way of so many seconds at full speed.
+        push_s: f64 = 0.006,
+        /// How far a push should go at the least, in counts.
+        push_counts: f64 = 18.0,
+        /// How far a push may go at the most, as a share of the room.
+        room_share: f64 = 0.12,
+        /// Longest push, in seconds.
+        longest_push_s: f64 = 0.35,
+        /// How long the motor may take to rest after a push: time constants, and seconds on top.
+        rest: (f64, f64) = (4.0, 0.08),
+        /// The longest that this may be, in seconds.
+        longest_rest_s: f64 = 1.0,
+        /// Time constant, in seconds, above which motors are still moving when they are looked at.
+        slowest_s: f64 = 0.3,
+        /// Least distance by which a push moves the axis, in counts.
+        least_distance_counts: f64 = 2.0,
+        /// Backlash that is reported is more than this, in counts.
+        least_counts: f64 = 1.5,
+        /// Backlash that is reported is more than so many of its standard errors.
+        sure: f64 = 3.0,
+        /// Backlash that is reported is more than this share of the push.
+        least_share: f64 = 0.04,
+        /// Standard error that rounding leaves, in counts.
+        least_error_counts: f64 = 0.4,
+    }
+}
 
 /// What the reversals showed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -51,17 +63,17 @@ pub fn measure_backlash<L: Law>(
     probe: &Probe,
     model: &PlantModel,
 ) -> Result<Option<Backlash>, Cause> {
-    let room = guard.room_counts().map_or(f64::INFINITY, |room| ROOM_SHARE * room);
-    let distance = (PUSH_S * model.gain_counts_per_s).max(PUSH_COUNTS).min(room);
-    if distance < 6.0 || model.tau_s > SLOWEST_S {
+    let room = guard.room_counts().map_or(f64::INFINITY, |room| BACKLASH.room_share * room);
+    let distance = (BACKLASH.push_s * model.gain_counts_per_s).max(BACKLASH.push_counts).min(room);
+    if distance < 6.0 || model.tau_s > BACKLASH.slowest_s {
         return Ok(None);
     }
     // The motor was started upwards, against the load or with it.
     let start = (probe.start_duty - model.load_duty).max(model.coulomb_duty);
     let most = guard.options.max_duty - model.load_duty.abs();
-    let duty = (start + (ABOVE.0 * start).max(ABOVE.1)).min(most);
+    let duty = (start + (BACKLASH.above.0 * start).max(BACKLASH.above.1)).min(most);
     let push_s = push_time_s(model, duty, distance);
-    let rest_s = (REST.0 * model.tau_s + REST.1).min(LONGEST_REST_S);
+    let rest_s = (BACKLASH.rest.0 * model.tau_s + BACKLASH.rest.1).min(BACKLASH.longest_rest_s);
     // Backlash looks like a stall for a while. The duty is low, and a motor that does not move ends the run here.
     let kept_start_duty = std::mem::take(&mut guard.monitor.start_duty);
     let distances = push(guard, duty, model.load_duty, push_s, rest_s);
@@ -69,7 +81,7 @@ pub fn measure_backlash<L: Law>(
     let distances = distances?;
     if did_not_move(&distances) {
         let backwards =
-            distances.iter().rev().take(2).all(|(_, distance)| *distance <= -LEAST_DISTANCE_COUNTS);
+            distances.iter().rev().take(2).all(|(_, distance)| *distance <= -BACKLASH.least_distance_counts);
         return Err(why_unmoved(&guard.monitor, backwards));
     }
     Ok(Some(backlash_of(&distances)))
@@ -77,7 +89,9 @@ pub fn measure_backlash<L: Law>(
 
 /// Whether two pushes in a row moved nothing: one may end in the backlash.
 fn did_not_move(distances: &[(f64, f64)]) -> bool {
-    distances.windows(2).any(|pair| pair.iter().all(|(_, distance)| *distance < LEAST_DISTANCE_COUNTS))
+    distances
+        .windows(2)
+        .any(|pair| pair.iter().all(|(_, distance)| *distance < BACKLASH.least_distance_counts))
 }
 
 /// Pushes with a duty to either side of the one that balances the load. For each push: 1 for another one in the same
@@ -91,7 +105,7 @@ fn push<L: Law>(
 ) -> Result<Vec<(f64, f64)>, Cause> {
     let mut distances = Vec::new();
     let mut before = 0.0;
-    for direction in PUSHES {
+    for direction in BACKLASH.pushes {
         guard.poll(false)?;
         let from = position(guard);
         guard.duty(load_duty + direction * duty)?;
@@ -126,7 +140,7 @@ fn push_time_s(model: &PlantModel, duty: f64, distance: f64) -> f64 {
     let speed = model.gain_counts_per_s * (duty - model.coulomb_duty).max(0.02);
     let tau = model.tau_s;
     let mut t = 0.02;
-    while t < LONGEST_PUSH_S && speed * (t - tau * (1.0 - (-t / tau).exp())) < distance {
+    while t < BACKLASH.longest_push_s && speed * (t - tau * (1.0 - (-t / tau).exp())) < distance {
         t += 0.005;
     }
     t
@@ -143,8 +157,9 @@ fn backlash_of(distances: &[(f64, f64)]) -> Backlash {
     };
     let (same, turned) = (of(false), of(true));
     let (a, b) = (mean_and_error(&same), mean_and_error(&turned));
-    let (short, error) = (a.0 - b.0, a.1.hypot(b.1).max(LEAST_ERROR_COUNTS));
-    let is_sure = short > LEAST_COUNTS && short > SURE * error && short > LEAST_SHARE * a.0;
+    let (short, error) = (a.0 - b.0, a.1.hypot(b.1).max(BACKLASH.least_error_counts));
+    let is_sure =
+        short > BACKLASH.least_counts && short > BACKLASH.sure * error && short > BACKLASH.least_share * a.0;
     Backlash {
         counts: if is_sure { short } else { 0.0 },
         interval_counts: 1.96 * error,

@@ -6,35 +6,48 @@ use crate::cause::Cause;
 use crate::experiment_guard::ExperimentGuard;
 use crate::law::Law;
 use crate::settle::{Settled, settled};
+use crate::thresholds::thresholds;
 use serde::{Deserialize, Serialize};
 
-/// Switches of the relay.
-const SWITCHES: usize = 8;
-/// A slow axis shows itself in fewer, when they took this long, s.
-const FEW_SWITCHES: usize = 2;
-const ENOUGH_S: f64 = 1.5;
-/// Where the relay switches, as shares of the difference between its two speeds.
-const SWITCH_AT: (f64, f64) = (0.28, 0.72);
-/// Longest time for one settling and for the relay, s.
-const LONGEST_SETTLE_S: f64 = 20.0;
-const LONGEST_RELAY_S: f64 = 12.0;
-/// Steps of the first climb to full duty: the first, the ratio, the time and polls at each, the shortest and longest time braked
-/// after it, and the share of its speed that is rest.
-const CLIMB_FROM: f64 = 0.2;
-const CLIMB_RATIO: f64 = 1.5;
-const CLIMB_S: f64 = 0.05;
-const CLIMB_POLLS: usize = 2;
-const CLIMB_REST_S: (f64, f64) = (0.1, 0.6);
-const CLIMB_STILL: f64 = 0.002;
-/// When a speed counts as settled.
-const INTERVAL: f64 = 0.01;
-const TAIL_ERROR: f64 = 0.006;
-/// A fine encoder shows the end sooner: time constants and interval.
-const EARLY: (f64, f64) = (2.2, 0.002);
-/// What of the speed that was still missing at the end is not known: the battery sags less as the current falls and the current limit leaves a slope, so that the
-/// rise is no exponential to its end. Of 36 flywheels and robot bases of seeds 7 and 11 of the bench, 35 were within this share and all within 0.09; without it two thirds of
-/// the flywheels' intervals missed QPPS.
-const EXTRAPOLATED: f64 = 0.06;
+thresholds! {
+    /// How an axis that turns freely is driven, and when its speed counts as settled.
+    FREE: Thresholds {
+        /// How often the relay switches.
+        switches: usize = 8,
+        /// Fewest switches in which a slow axis shows itself.
+        few_switches: usize = 2,
+        /// Time after which these few are enough, in seconds.
+        enough_s: f64 = 1.5,
+        /// Where the relay switches, as shares of the difference between its two speeds.
+        switch_at: (f64, f64) = (0.28, 0.72),
+        /// Longest time for one settling, in seconds.
+        longest_settle_s: f64 = 20.0,
+        /// Longest time for the relay, in seconds.
+        longest_relay_s: f64 = 12.0,
+        /// Least duty of the first step of the climb to full duty, as a share of full.
+        climb_from: f64 = 0.2,
+        /// Ratio of the duty of each step of the climb to that of the step before.
+        climb_ratio: f64 = 1.5,
+        /// Least time at each step of the climb, in seconds.
+        climb_s: f64 = 0.05,
+        /// Fewest polls at each step of the climb.
+        climb_polls: usize = 2,
+        /// Shortest and longest time braked after the climb, in seconds.
+        climb_rest_s: (f64, f64) = (0.1, 0.6),
+        /// Speed that is rest after the climb, as a share of the highest one in it.
+        climb_still: f64 = 0.002,
+        /// Half of the 95 % interval of a speed below which it counts as settled, as a share of it.
+        interval: f64 = 0.01,
+        /// How far the speed at the end may be from the one that it settles at, as a share of it.
+        tail_error: f64 = 0.006,
+        /// A fine encoder shows the end sooner: after so many time constants, with half of the interval below this share of the speed.
+        early: (f64, f64) = (2.2, 0.002),
+        /// What of the speed that was still missing at the end is not known, as a share: the battery sags less as the current falls and the current limit leaves a slope,
+        /// so that the rise is no exponential to its end. Of 36 flywheels and robot bases of seeds 7 and 11 of the bench, 35 were within this share and all within 0.09;
+        /// without it two thirds of the flywheels' intervals missed QPPS.
+        extrapolated: f64 = 0.06,
+    }
+}
 
 /// What the free run read off.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -83,7 +96,7 @@ pub fn run_free<L: Law>(guard: &mut ExperimentGuard<'_, L>, probe: &Probe) -> Re
     if (full_speeds.0 - full_speeds.1).abs() > 0.25 * mean {
         return Err(Cause::Lopsided);
     }
-    let of = |run: &Settled| run.interval.hypot(EXTRAPOLATED * run.remaining);
+    let of = |run: &Settled| run.interval.hypot(FREE.extrapolated * run.remaining);
     let interval = 0.5 * of(&forward).hypot(of(&backward));
     Ok(FreeRun {
         full_speeds,
@@ -100,22 +113,22 @@ pub fn run_free<L: Law>(guard: &mut ExperimentGuard<'_, L>, probe: &Probe) -> Re
 /// braked, so that it goes up once more from rest, which shows its time constant. Whether it came to rest: the record that the model is
 /// fitted to begins then, since a quick motor may stick at a low duty, and no model says when.
 fn climb<L: Law>(guard: &mut ExperimentGuard<'_, L>, full_duty: f64) -> Result<bool, Cause> {
-    let mut duty = (guard.monitor.start_duty + 0.06).max(CLIMB_FROM);
+    let mut duty = (guard.monitor.start_duty + 0.06).max(FREE.climb_from);
     let mut top: f64 = 0.0;
     while duty < 0.9 * full_duty {
         guard.duty(duty)?;
-        let (seen, until_s) = (guard.points.len() + CLIMB_POLLS, guard.now_s() + CLIMB_S);
+        let (seen, until_s) = (guard.points.len() + FREE.climb_polls, guard.now_s() + FREE.climb_s);
         while guard.now_s() < until_s || guard.points.len() < seen {
             guard.poll(false)?;
         }
-        top = top.max(guard.recent_speed(CLIMB_POLLS).map_or(0.0, f64::abs));
-        duty *= CLIMB_RATIO;
+        top = top.max(guard.recent_speed(FREE.climb_polls).map_or(0.0, f64::abs));
+        duty *= FREE.climb_ratio;
     }
     guard.duty(0.0)?;
-    let until_s = guard.now_s() + CLIMB_REST_S.1;
-    guard.poll_for(CLIMB_REST_S.0, false)?;
+    let until_s = guard.now_s() + FREE.climb_rest_s.1;
+    guard.poll_for(FREE.climb_rest_s.0, false)?;
     loop {
-        let is_still = guard.recent_speed(3).is_some_and(|speed| speed.abs() <= CLIMB_STILL * top);
+        let is_still = guard.recent_speed(3).is_some_and(|speed| speed.abs() <= FREE.climb_still * top);
         if is_still || guard.now_s() >= until_s {
             return Ok(is_still);
         }
@@ -147,13 +160,13 @@ pub(super) fn settle_at<L: Law>(guard: &mut ExperimentGuard<'_, L>, duty: f64) -
         }
         let from = guard.points.partition_point(|p| p.t < start);
         let Some(found) = settled(&guard.points[from..]) else { continue };
-        let level = (found.speed - found.tail_speed).abs() < TAIL_ERROR * found.speed.abs();
-        let settled = level && t > 3.0 * found.tau_s && found.interval < INTERVAL;
-        let clear = t > EARLY.0 * found.tau_s && t > 0.5 && found.interval < EARLY.1;
+        let level = (found.speed - found.tail_speed).abs() < FREE.tail_error * found.speed.abs();
+        let settled = level && t > 3.0 * found.tau_s && found.interval < FREE.interval;
+        let clear = t > FREE.early.0 * found.tau_s && t > 0.5 && found.interval < FREE.early.1;
         if settled || clear {
             return Ok(found);
         }
-        if guard.now_s() - begin > LONGEST_SETTLE_S {
+        if guard.now_s() - begin > FREE.longest_settle_s {
             return Err(if found.interval < 0.05 { Cause::TimeLimit } else { Cause::TooCoarse });
         }
     }
@@ -186,14 +199,14 @@ fn run_relay<L: Law>(
     let start = probe_share(guard);
     let speed_at = |duty: f64| full_speed * (duty - start) / (guard.options.max_duty - start).max(0.05);
     let (low, high) = (speed_at(duties.0), speed_at(duties.1));
-    let down = low + SWITCH_AT.0 * (high - low);
-    let up = low + SWITCH_AT.1 * (high - low);
+    let down = low + FREE.switch_at.0 * (high - low);
+    let up = low + FREE.switch_at.1 * (high - low);
     let mut rising = false;
     guard.duty(duties.0)?;
     let begin = guard.now_s();
     let mut since = begin;
     let mut switches = 0;
-    while switches < SWITCHES {
+    while switches < FREE.switches {
         guard.poll(false)?;
         let now = guard.now_s();
         let Some(speed) = guard.recent_speed(2) else { continue };
@@ -205,7 +218,9 @@ fn run_relay<L: Law>(
             guard.duty(if rising { duties.1 } else { duties.0 })?;
             since = now;
             switches += 1;
-        } else if now - begin > LONGEST_RELAY_S || (switches >= FEW_SWITCHES && now - begin > ENOUGH_S) {
+        } else if now - begin > FREE.longest_relay_s
+            || (switches >= FREE.few_switches && now - begin > FREE.enough_s)
+        {
             break;
         }
     }

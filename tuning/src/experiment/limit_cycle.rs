@@ -3,19 +3,27 @@
 use crate::cause::Cause;
 use crate::experiment_guard::{ExperimentGuard, Input, Point};
 use crate::law::Law;
+use crate::thresholds::thresholds;
 use nalgebra::{Complex, DMatrix, DVector};
 use std::f64::consts::TAU;
 
-/// Cycles that are left out at first, that are looked at together, and such groups: a spread wants three at least.
-pub(super) const FIRST_CYCLES: usize = 2;
-const GROUP: usize = 3;
-const GROUPS: usize = 4;
-/// Cycles that are looked at.
-pub(super) const CYCLES: usize = GROUP * GROUPS;
-/// Spread of the period between groups, relative, beyond which there is no limit cycle.
-const MOST_SPREAD: f64 = 0.3;
-/// The 97.5 % point of Student's t with three degrees of freedom: the intervals are of four groups.
-const STUDENT: f64 = 3.182;
+thresholds! {
+    /// Which swings of a relay count, and how much they may differ.
+    pub(crate) LIMIT_CYCLE: Thresholds {
+        /// Cycles that are left out at first.
+        first_cycles: usize = 2,
+        /// Cycles that are looked at together, as a group.
+        group: usize = 3,
+        /// How many such groups there are: a spread wants three at least.
+        groups: usize = 4,
+        /// Cycles that are looked at in all.
+        cycles: usize = group * groups,
+        /// Half of the 95 % interval of the period, from its spread between groups, beyond which there is no limit cycle, as a share of the period.
+        most_spread: f64 = 0.3,
+        /// The 97.5 % point of Student's t with three degrees of freedom: the intervals are of four groups.
+        student: f64 = 3.182,
+    }
+}
 
 /// A figure and half of its 95 % interval.
 pub type Figure = (f64, f64);
@@ -71,9 +79,9 @@ impl Group {
 
 /// The groups of a limit cycle that was switched up at these times.
 pub(super) fn groups<L: Law>(guard: &ExperimentGuard<'_, L>, ups: &[f64]) -> Result<Vec<Group>, Cause> {
-    let cycles = ups.windows(GROUP + 1).step_by(GROUP);
+    let cycles = ups.windows(LIMIT_CYCLE.group + 1).step_by(LIMIT_CYCLE.group);
     let groups: Vec<Group> = cycles.filter_map(|ups| Group::of(guard, ups)).collect();
-    if groups.len() < GROUPS { Err(Cause::NoLimitCycle) } else { Ok(groups) }
+    if groups.len() < LIMIT_CYCLE.groups { Err(Cause::NoLimitCycle) } else { Ok(groups) }
 }
 
 /// A figure of groups.
@@ -83,7 +91,7 @@ pub(super) fn figure(groups: &[Group], of: impl Fn(&Group) -> f64) -> Figure {
 
 /// Whether cycles of this period are all alike.
 pub(super) fn is_steady(period_s: Figure) -> bool {
-    period_s.1 < MOST_SPREAD * period_s.0
+    period_s.1 < LIMIT_CYCLE.most_spread * period_s.0
 }
 
 /// The slope of counts, and the first harmonic of what is beside it, by least squares with the next two harmonics beside. `None` with too few.
@@ -115,5 +123,5 @@ pub(super) fn mean_and_doubt(values: &[f64]) -> Figure {
     let count = values.len().max(1) as f64;
     let mean = values.iter().sum::<f64>() / count;
     let square = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
-    (mean, STUDENT * (square / count).sqrt())
+    (mean, LIMIT_CYCLE.student * (square / count).sqrt())
 }

@@ -1,15 +1,15 @@
 //! Experiments on a guarded axis: what they drive and what they read off at once. Fits over their records stand in [`crate::fit`].
 
-mod backlash;
-mod free;
-mod limit_cycle;
-mod own_test;
-mod position_relay;
-mod probe;
-mod relay;
+pub(crate) mod backlash;
+pub(crate) mod free;
+pub(crate) mod limit_cycle;
+pub(crate) mod own_test;
+pub(crate) mod position_relay;
+pub(crate) mod probe;
+pub(crate) mod relay;
 mod rest;
-mod step;
-mod window;
+pub(crate) mod step;
+pub(crate) mod window;
 
 pub use backlash::{Backlash, measure_backlash};
 pub use free::{FreeRun, run_free};

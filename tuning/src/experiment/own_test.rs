@@ -10,18 +10,25 @@ use super::step::about;
 use crate::cause::Cause;
 use crate::experiment_guard::ExperimentGuard;
 use crate::law::Law;
+use crate::thresholds::thresholds;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// Half the height of the relay, as duty: that of this program's own relay.
-const HALF_HEIGHT: f64 = 0.22;
-/// How often its begin is asked for. One that may have come is called off first: a second one would begin about the duty of the first.
-const TRIES: usize = 3;
-/// The amplitude at the least, in steps of the speed.
-const LEAST_AMPLITUDE: f64 = 1.2;
-/// How often its result is asked for, s, and how long it may take, s.
-const LOOK_S: f64 = 0.1;
-const LONGEST_S: f64 = 15.0;
+thresholds! {
+    /// The controller's own relay test: its amplitude, tries and time.
+    OWN_TEST: Thresholds {
+        /// Half the height of the relay about a speed, as a share of full duty: that of this program's own relay.
+        half_height: f64 = 0.22,
+        /// How often the test is asked to begin. One that may have come is called off first: a second one would begin about the duty of the first.
+        tries: usize = 3,
+        /// Least amplitude about a speed, in steps of the speed.
+        least_amplitude: f64 = 1.2,
+        /// Time between two requests for its result, in seconds.
+        look_s: f64 = 0.1,
+        /// How long the result may take, in seconds.
+        longest_s: f64 = 15.0,
+    }
+}
 
 /// What the controller's own relay test found.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -55,13 +62,13 @@ pub fn run_own_test<L: Law>(
     probe: &Probe,
     duty: f64,
 ) -> Result<OwnTestRun, Cause> {
-    let duties = about(guard, probe, duty, HALF_HEIGHT)?;
+    let duties = about(guard, probe, duty, OWN_TEST.half_height)?;
     let (middle, height) = (0.5 * (duties.0 + duties.1), 0.5 * (duties.1 - duties.0));
     let settled = settle_at(guard, middle)?;
     // A count more or less in a tick of the loop is the step of its speed. An oscillation that is no larger is the rounding's, not the motor's.
     let wanted = f64::from(guard.law.rate_hz());
     let mut hysteresis = None;
-    for _ in 0..TRIES {
+    for _ in 0..OWN_TEST.tries {
         hysteresis = guard.start_own_test(height, wanted, settled.speed)?;
         if hysteresis.is_some() {
             break;
@@ -73,7 +80,7 @@ pub fn run_own_test<L: Law>(
     guard.duty(0.0)?;
     guard.poll_for((3.0 * settled.tau_s).clamp(0.06, 0.5), false)?;
     let (amplitude, period_s) = found.ok_or(Cause::NoLimitCycle)?;
-    if amplitude < LEAST_AMPLITUDE * wanted {
+    if amplitude < OWN_TEST.least_amplitude * wanted {
         return Err(Cause::NoLimitCycle);
     }
     Ok(OwnTestRun { duties, set_speed: settled.speed, hysteresis, amplitude, period_s })
@@ -81,9 +88,9 @@ pub fn run_own_test<L: Law>(
 
 /// Polls until the controller has a result; `None` where it has none in time.
 fn wait<L: Law>(guard: &mut ExperimentGuard<'_, L>) -> Result<Option<(f64, f64)>, Cause> {
-    let until_s = guard.now_s() + LONGEST_S;
+    let until_s = guard.now_s() + OWN_TEST.longest_s;
     while guard.now_s() < until_s {
-        guard.poll_for(LOOK_S, true)?;
+        guard.poll_for(OWN_TEST.look_s, true)?;
         if let Some(found) = guard.own_test()? {
             return Ok(Some(found));
         }

@@ -5,30 +5,41 @@
 //! describing function is that of a symmetrical relay (Astrom and Hagglund, "Advanced PID Control", ISA 2006, section 8.3).
 
 use super::Probe;
-use super::limit_cycle::{CYCLES, FIRST_CYCLES, Figure, figure, groups, is_steady, mean_and_doubt};
+use super::limit_cycle::{Figure, LIMIT_CYCLE, figure, groups, is_steady, mean_and_doubt};
 use crate::cause::Cause;
 use crate::experiment_guard::ExperimentGuard;
 use crate::law::Law;
+use crate::thresholds::thresholds;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// Half the height of the relay above the duty that the motor starts at.
-const ABOVE_START: f64 = 0.22;
-/// The same in a travel where the cycle came too near to an end, and the least that is tried.
-const LOWERED: f64 = 0.6;
-const LEAST_ABOVE: f64 = 0.06;
-/// Share of the width that the axis may go from the set position.
-const MOST_REACH: f64 = 0.4;
-/// Polls at rest from which the noise of the count is taken, what the rounding of a count alone makes, and the hysteresis in standard deviations, counts.
-const NOISE_POLLS: usize = 20;
-const ROUNDED_COUNTS: f64 = 0.289;
-const HYSTERESIS: f64 = 3.0;
-/// Cycles in which the duty that a load takes is learned, and what of a cycle's is taken over.
-const BIASED_CYCLES: usize = 5;
-const BIAS_SHARE: f64 = 0.7;
-/// Longest relay, s; the amplitude at the least, in hysteresis.
-const LONGEST_S: f64 = 40.0;
-const LEAST_AMPLITUDE: f64 = 2.0;
+thresholds! {
+    /// The relay about a position: its duties, hysteresis, bias and time.
+    POSITION_RELAY: Thresholds {
+        /// Half the height of the relay above the duty that the motor starts at, as a share of full.
+        above_start: f64 = 0.22,
+        /// Factor of that in a travel where the cycle came too near to an end.
+        lowered: f64 = 0.6,
+        /// The least that is then tried, as a share of full.
+        least_above: f64 = 0.06,
+        /// How far the axis may go from the set position, as a share of the width.
+        most_reach: f64 = 0.4,
+        /// How many polls at rest the noise of the count is taken from.
+        noise_polls: usize = 20,
+        /// Noise that the rounding of a count alone makes, as a standard deviation in counts.
+        rounded_counts: f64 = 0.289,
+        /// Hysteresis, in standard deviations of the count's noise.
+        hysteresis: f64 = 3.0,
+        /// Cycles in which the duty that a load takes is learned.
+        biased_cycles: usize = 5,
+        /// Share of a cycle's mean duty that is taken over.
+        bias_share: f64 = 0.7,
+        /// Longest relay, in seconds.
+        longest_s: f64 = 40.0,
+        /// Least amplitude, as a multiple of the hysteresis.
+        least_amplitude: f64 = 2.0,
+    }
+}
 
 /// What a relay about a position read off.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -74,14 +85,14 @@ pub fn run_position_relay<L: Law>(
     guard.monitor.start_duty = probe.start_duty;
     guard.monitor.stall_amps = probe.stall_amps;
     guard.monitor.drive_limit = guard.drive_limit(probe.stall_amps);
-    let mut above = ABOVE_START;
+    let mut above = POSITION_RELAY.above_start;
     loop {
         let half = (probe.start_duty + above).min(guard.options.max_duty);
         match oscillate(guard, half, width) {
             // A quick motor comes too far between two polls: with less duty it does not.
-            Err(Cause::TravelLimit) if above * LOWERED >= LEAST_ABOVE => {
+            Err(Cause::TravelLimit) if above * POSITION_RELAY.lowered >= POSITION_RELAY.least_above => {
                 guard.come_to_rest()?;
-                above *= LOWERED;
+                above *= POSITION_RELAY.lowered;
             }
             other => return other,
         }
@@ -95,13 +106,13 @@ fn oscillate<L: Law>(
     width: Option<f64>,
 ) -> Result<PositionRelayRun, Cause> {
     let (set_counts, noise_counts) = at_rest(guard)?;
-    let hysteresis_counts = HYSTERESIS * noise_counts;
+    let hysteresis_counts = POSITION_RELAY.hysteresis * noise_counts;
     let from_s = guard.now_s();
-    let reach = width.map_or(f64::INFINITY, |width| MOST_REACH * width);
+    let reach = width.map_or(f64::INFINITY, |width| POSITION_RELAY.most_reach * width);
     let mut relay = Relay { set_counts, hysteresis_counts, half, bias: 0.0, reach, top_speed: 0.0 };
     let ups = relay.switch(guard)?;
     guard.come_to_rest()?;
-    let kept = ups.get(BIASED_CYCLES + FIRST_CYCLES..).unwrap_or_default();
+    let kept = ups.get(POSITION_RELAY.biased_cycles + LIMIT_CYCLE.first_cycles..).unwrap_or_default();
     let groups = groups(guard, kept)?;
     let omega = TAU / figure(&groups, |group| group.period_s).0;
     let run = PositionRelayRun {
@@ -110,26 +121,26 @@ fn oscillate<L: Law>(
         set_counts,
         noise_counts,
         hysteresis_counts,
-        cycles: CYCLES,
+        cycles: LIMIT_CYCLE.cycles,
         period_s: figure(&groups, |group| group.period_s),
         amplitude_counts: figure(&groups, |group| group.speed.norm() / omega),
         response: figure(&groups, |group| group.speed.norm() / group.duty.norm() / omega),
         lag_deg: figure(&groups, |group| 90.0 - (group.speed / group.duty).arg().to_degrees()),
         top_speed: relay.top_speed,
     };
-    let is_clear = run.amplitude_counts.0 > LEAST_AMPLITUDE * hysteresis_counts;
+    let is_clear = run.amplitude_counts.0 > POSITION_RELAY.least_amplitude * hysteresis_counts;
     if is_steady(run.period_s) && is_clear { Ok(run) } else { Err(Cause::NoLimitCycle) }
 }
 
 /// Where the axis stands, and the noise of its count there.
 fn at_rest<L: Law>(guard: &mut ExperimentGuard<'_, L>) -> Result<(f64, f64), Cause> {
     let mut counts = Vec::new();
-    while counts.len() < NOISE_POLLS {
+    while counts.len() < POSITION_RELAY.noise_polls {
         counts.extend(guard.poll(false)?.map(|point| point.counts));
     }
     let (mean, _) = mean_and_doubt(&counts);
     let square = counts.iter().map(|count| (count - mean).powi(2)).sum::<f64>() / counts.len() as f64;
-    Ok((mean, square.sqrt().max(ROUNDED_COUNTS)))
+    Ok((mean, square.sqrt().max(POSITION_RELAY.rounded_counts)))
 }
 
 struct Relay {
@@ -149,8 +160,8 @@ impl Relay {
         let mut ups = Vec::new();
         let mut switched_s = self.give(guard, is_up)?;
         let mut up_s = 0.0;
-        while ups.len() <= BIASED_CYCLES + FIRST_CYCLES + CYCLES {
-            if guard.now_s() - begin_s > LONGEST_S {
+        while ups.len() <= POSITION_RELAY.biased_cycles + LIMIT_CYCLE.first_cycles + LIMIT_CYCLE.cycles {
+            if guard.now_s() - begin_s > POSITION_RELAY.longest_s {
                 return Err(Cause::NoLimitCycle);
             }
             let Some(point) = guard.poll(false)? else { continue };
@@ -166,12 +177,12 @@ impl Relay {
                 continue;
             }
             is_up = !is_up;
-            if is_up && !ups.is_empty() && ups.len() <= BIASED_CYCLES {
+            if is_up && !ups.is_empty() && ups.len() <= POSITION_RELAY.biased_cycles {
                 // The mean duty of a cycle is what the load takes.
                 let down_s = point.t - switched_s;
                 let mean = self.half * (up_s - down_s) / (up_s + down_s).max(f64::MIN_POSITIVE);
                 let most = guard.options.max_duty - self.half;
-                self.bias = (self.bias + BIAS_SHARE * mean).clamp(-most, most);
+                self.bias = (self.bias + POSITION_RELAY.bias_share * mean).clamp(-most, most);
             }
             let now_s = self.give(guard, is_up)?;
             if is_up {

@@ -3,27 +3,38 @@
 
 use crate::axis::EncoderClass;
 use crate::cause::Cause;
-use crate::current_silence::{NO_CURRENT_AMPS, NOISES};
+use crate::current_silence::SILENCE;
 use crate::experiment_guard::ExperimentGuard;
 use crate::law::Law;
+use crate::thresholds::thresholds;
 use serde::{Deserialize, Serialize};
 
-/// Time at rest first, s, and how long a motor that still turns is waited for: as long as at the end of a run.
-const REST_S: f64 = 0.12;
-const LONGEST_STAND_S: f64 = 3.0;
-/// Readings at rest from which the noise of a current is told, and the longest time for them, s. Of six readings one set in 25 says less than half of the noise,
-/// of twenty 3 in 10,000 (chi-square).
-const NOISE_READINGS: usize = 20;
-const LONGEST_NOISE_S: f64 = 1.0;
-/// The ramp: first duty, step, highest duty, time per step in s.
-const FIRST_DUTY: f64 = 0.04;
-const DUTY_STEP: f64 = 0.02;
-const LAST_DUTY: f64 = 0.40;
-const STEP_S: f64 = 0.06;
-/// Counts that are a motion.
-const MOTION_COUNTS: f64 = 4.0;
-/// Readings at the beginning of the ramp from which the current of the resting motor is read, at the least.
-const LEAST_READINGS: usize = 2;
+thresholds! {
+    /// The first motion: duties raised from zero until the encoder moves.
+    PROBE: Thresholds {
+        /// Time at rest first, in seconds.
+        rest_s: f64 = 0.12,
+        /// How long a motor that still turns is waited for, in seconds: as long as at the end of a run.
+        longest_stand_s: f64 = 3.0,
+        /// Readings at rest from which the noise of a current is told. Of six readings one set in 25 says less than half of the noise, of twenty 3 in 10,000
+        /// (chi-square).
+        noise_readings: usize = 20,
+        /// Longest time for these readings, in seconds.
+        longest_noise_s: f64 = 1.0,
+        /// First duty of the ramp, as a share of full.
+        first_duty: f64 = 0.04,
+        /// Step of the ramp, as a share of full duty.
+        duty_step: f64 = 0.02,
+        /// Highest duty of the ramp, as a share of full.
+        last_duty: f64 = 0.40,
+        /// Time for each step of the ramp, in seconds.
+        step_s: f64 = 0.06,
+        /// Counts that are a motion.
+        motion_counts: f64 = 4.0,
+        /// Fewest readings at the beginning of the ramp from which the current of the resting motor is read.
+        least_readings: usize = 2,
+    }
+}
 
 /// What the probe found.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -56,13 +67,13 @@ pub fn run_probe<L: Law>(guard: &mut ExperimentGuard<'_, L>, direction: f64) -> 
     guard.monitor.highest_rest_amps = at_rest.iter().map(|amps| amps.abs()).fold(0.0, f64::max);
     let no_current = guard.monitor.no_current_amps();
     let mut readings: Vec<(f64, f64)> = Vec::new();
-    let highest = LAST_DUTY.min(guard.options.max_duty);
+    let highest = PROBE.last_duty.min(guard.options.max_duty);
     let begin = guard.now_s();
     let mut moved = None;
     let mut step = 0;
     // By the clock: slow polls make coarser steps, not a longer ramp.
     while moved.is_none() {
-        let duty = FIRST_DUTY + DUTY_STEP * f64::from(step);
+        let duty = PROBE.first_duty + PROBE.duty_step * f64::from(step);
         if duty > highest + 1e-9 {
             break;
         }
@@ -72,11 +83,11 @@ pub fn run_probe<L: Law>(guard: &mut ExperimentGuard<'_, L>, direction: f64) -> 
             if let Some(point) = guard.poll(false)? {
                 latest = point.amps.map(f64::abs).or(latest);
                 let by = (point.counts - rest) * direction;
-                if by.abs() >= MOTION_COUNTS.max(3.0 * noise) {
+                if by.abs() >= PROBE.motion_counts.max(3.0 * noise) {
                     moved = Some((duty, by));
                 }
             }
-            let due = ((guard.now_s() - begin) / STEP_S) as i32;
+            let due = ((guard.now_s() - begin) / PROBE.step_s) as i32;
             if due > step || moved.is_some() {
                 step = due;
                 break;
@@ -103,18 +114,19 @@ fn stand<L: Law>(guard: &mut ExperimentGuard<'_, L>) -> Result<f64, Cause> {
     let first_s = guard.now_s();
     let mut from_s = first_s;
     loop {
-        guard.poll_for(REST_S, false)?;
+        guard.poll_for(PROBE.rest_s, false)?;
         guard.refuse_slow_line()?;
         let counts = || guard.points.iter().filter(|point| point.t >= from_s).map(|point| point.counts);
         let turned = counts().next().zip(counts().next_back()).map_or(0.0, |(first, last)| last - first);
         // What an absolute encoder reads at rest is noise.
-        let is_turning = guard.setup.encoder == EncoderClass::Quadrature && turned.abs() > MOTION_COUNTS;
+        let is_turning =
+            guard.setup.encoder == EncoderClass::Quadrature && turned.abs() > PROBE.motion_counts;
         let now_s = guard.now_s();
         if !is_turning {
             listen(guard, from_s)?;
             return Ok(from_s);
         }
-        if now_s - first_s > LONGEST_STAND_S {
+        if now_s - first_s > PROBE.longest_stand_s {
             return Ok(from_s);
         }
         from_s = now_s;
@@ -123,11 +135,11 @@ fn stand<L: Law>(guard: &mut ExperimentGuard<'_, L>) -> Result<f64, Cause> {
 
 /// Reads on while the motor stands, where its current is noisy.
 fn listen<L: Law>(guard: &mut ExperimentGuard<'_, L>, rest_s: f64) -> Result<(), Cause> {
-    let until_s = guard.now_s() + LONGEST_NOISE_S;
+    let until_s = guard.now_s() + PROBE.longest_noise_s;
     loop {
         let amps = || guard.points.iter().filter(|point| point.t >= rest_s).filter_map(|point| point.amps);
-        let is_noisy = amps().any(|amps| amps.abs() > NO_CURRENT_AMPS);
-        if !is_noisy || amps().count() >= NOISE_READINGS || guard.now_s() > until_s {
+        let is_noisy = amps().any(|amps| amps.abs() > SILENCE.no_current_amps);
+        if !is_noisy || amps().count() >= PROBE.noise_readings || guard.now_s() > until_s {
             return Ok(());
         }
         guard.poll(false)?;
@@ -147,7 +159,7 @@ fn nothing_moved<L: Law>(
     if peak_amps <= guard.monitor.no_current_amps() {
         return Ok(Cause::MotorOpen);
     }
-    let (last_duty, last_amps) = readings.last().copied().unwrap_or((LAST_DUTY, peak_amps));
+    let (last_duty, last_amps) = readings.last().copied().unwrap_or((PROBE.last_duty, peak_amps));
     if last_amps < 0.7 * steepest * last_duty {
         return Ok(Cause::EncoderDead);
     }
@@ -165,16 +177,16 @@ fn nothing_moved<L: Law>(
 /// the steepest line through the first readings, two of them or more, each as it lies a standard deviation below what was fitted.
 fn steepest(readings: &[(f64, f64)], no_current: f64) -> f64 {
     let single = readings.iter().filter(|r| r.1 > 2.0 * no_current).map(|r| r.1 / r.0).fold(0.0, f64::max);
-    if no_current <= NO_CURRENT_AMPS || readings.len() < LEAST_READINGS {
+    if no_current <= SILENCE.no_current_amps || readings.len() < PROBE.least_readings {
         return single;
     }
     let (mut duties, mut products) = (0.0, 0.0);
     let mut best: Option<(f64, f64)> = None;
     for (n, (duty, amps)) in readings.iter().enumerate() {
         (duties, products) = (duties + duty * duty, products + duty * amps);
-        let (slope, noise) = (products / duties, no_current / NOISES / duties.sqrt());
+        let (slope, noise) = (products / duties, no_current / SILENCE.noises / duties.sqrt());
         let is_surer = best.is_none_or(|known| slope - noise > known.0 - known.1);
-        if n + 1 >= LEAST_READINGS && is_surer && slope > 2.0 * noise {
+        if n + 1 >= PROBE.least_readings && is_surer && slope > 2.0 * noise {
             best = Some((slope, noise));
         }
     }

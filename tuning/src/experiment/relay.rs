@@ -8,29 +8,35 @@
 
 use super::Probe;
 use super::free::{rise_s, settle_at, tau_bounds};
-use super::limit_cycle::{CYCLES, FIRST_CYCLES, Figure, Group, figure, groups, is_steady, mean_and_doubt};
+use super::limit_cycle::{Figure, Group, LIMIT_CYCLE, figure, groups, is_steady, mean_and_doubt};
 use super::step::about;
 use crate::cause::Cause;
 use crate::experiment_guard::ExperimentGuard;
 use crate::law::Law;
+use crate::thresholds::thresholds;
 use serde::{Deserialize, Serialize};
 
-/// Half the height of the relay, as duty.
-const HALF_HEIGHT: f64 = 0.22;
-/// How far the set speed is above that of the middle duty, in that part of the upper half of the relay which the motor follows.
-const SET_SHARE: f64 = 0.4;
-/// Polls at the middle duty from which the noise of the speed is taken, and the hysteresis in its standard deviations: noise crosses three of
-/// them in one poll of 370.
-const NOISE_POLLS: usize = 40;
-const HYSTERESIS: f64 = 3.0;
-/// Polls that a speed is taken over: so many to a time constant, at the least and at the most. More make less noise, and a longer delay.
-const SPEED_POLLS: (f64, f64, f64) = (6.0, 2.0, 8.0);
-/// Longest relay, s.
-const LONGEST_S: f64 = 30.0;
-/// The amplitude at the least, in hysteresis.
-const LEAST_AMPLITUDE: f64 = 0.8;
-/// Half of the 95 % interval of the gain, relative, beyond which the asymmetry tells nothing.
-const WIDEST_GAIN: f64 = 0.3;
+thresholds! {
+    /// The relay about a speed: its duties, hysteresis, time, and what is believed of it.
+    RELAY: Thresholds {
+        /// Half the height of the relay, as a share of full duty.
+        half_height: f64 = 0.22,
+        /// How far the set speed lies above that of the middle duty, as a share of the speed that the upper half of the relay adds.
+        set_share: f64 = 0.4,
+        /// How many polls at the middle duty the noise of the speed is taken from.
+        noise_polls: usize = 40,
+        /// Hysteresis, in standard deviations of the speed's noise: noise crosses three of them in one poll of 370.
+        hysteresis: f64 = 3.0,
+        /// Polls that a speed is taken over: how many such spans a time constant has, and the fewest and most polls. More make less noise, and a longer delay.
+        speed_polls: (f64, f64, f64) = (6.0, 2.0, 8.0),
+        /// Longest relay, in seconds.
+        longest_s: f64 = 30.0,
+        /// Least amplitude, as a multiple of the hysteresis.
+        least_amplitude: f64 = 0.8,
+        /// Half of the 95 % interval of the gain, as a share of it, beyond which the asymmetry tells nothing.
+        widest_gain: f64 = 0.3,
+    }
+}
 
 /// What a relay read off.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -80,25 +86,25 @@ pub fn run_relay<L: Law>(
     guard.monitor.start_duty = probe.start_duty;
     guard.monitor.stall_amps = probe.stall_amps;
     guard.monitor.drive_limit = guard.drive_limit(probe.stall_amps);
-    let duties = about(guard, probe, duty, HALF_HEIGHT)?;
+    let duties = about(guard, probe, duty, RELAY.half_height)?;
     let middle_duty = 0.5 * (duties.0 + duties.1);
     let from_s = guard.now_s();
     let middle = settle_at(guard, middle_duty)?;
     let rise = rise_s(guard, from_s, middle.speed);
     guard.monitor.stopping_s = middle.tau_s.min(rise);
     guard.monitor.tau_bounds_s = Some(tau_bounds(middle.tau_s, rise));
-    let polls =
-        (middle.tau_s / guard.options.poll_s / SPEED_POLLS.0).clamp(SPEED_POLLS.1, SPEED_POLLS.2) as usize;
+    let polls = (middle.tau_s / guard.options.poll_s / RELAY.speed_polls.0)
+        .clamp(RELAY.speed_polls.1, RELAY.speed_polls.2) as usize;
     let noise = speed_noise(guard, polls)?;
-    let hysteresis = HYSTERESIS * noise;
+    let hysteresis = RELAY.hysteresis * noise;
     // Speed per duty as far as it is known: friction takes the starting duty or less.
     let slope = middle.speed / (middle_duty - 0.5 * probe.start_duty).max(0.05);
-    let set_speed = middle.speed + SET_SHARE * slope * (duties.1 - middle_duty);
+    let set_speed = middle.speed + RELAY.set_share * slope * (duties.1 - middle_duty);
     let relay_s = guard.now_s();
     let switched_up_s = switch(guard, polls, duties, (set_speed, hysteresis))?;
     guard.duty(0.0)?;
     guard.poll_for((3.0 * middle.tau_s).clamp(0.06, 0.5), false)?;
-    let kept = switched_up_s.get(FIRST_CYCLES..).unwrap_or_default();
+    let kept = switched_up_s.get(LIMIT_CYCLE.first_cycles..).unwrap_or_default();
     let groups = groups(guard, kept)?;
     let figure = |of: &dyn Fn(&Group) -> f64| figure(&groups, of);
     let gain = |group: &Group| (group.mean_speed - middle.speed) / (group.mean_duty - middle_duty);
@@ -117,17 +123,17 @@ pub fn run_relay<L: Law>(
         set_speed,
         noise,
         hysteresis,
-        cycles: CYCLES,
+        cycles: LIMIT_CYCLE.cycles,
         period_s: figure(&|group| group.period_s),
         amplitude: figure(&|group| group.speed.norm()),
         response: figure(&|group| group.speed.norm() / group.duty.norm()),
         lag_deg: figure(&|group| -(group.speed / group.duty).arg().to_degrees()),
         static_gain,
     };
-    if !is_steady(run.period_s) || run.amplitude.0 <= LEAST_AMPLITUDE * hysteresis {
+    if !is_steady(run.period_s) || run.amplitude.0 <= RELAY.least_amplitude * hysteresis {
         return Err(Cause::NoLimitCycle);
     }
-    if run.static_gain.0 <= run.response.0 || run.static_gain.1 > WIDEST_GAIN * run.static_gain.0 {
+    if run.static_gain.0 <= run.response.0 || run.static_gain.1 > RELAY.widest_gain * run.static_gain.0 {
         return Err(Cause::StepUnclear);
     }
     Ok(run)
@@ -136,7 +142,7 @@ pub fn run_relay<L: Law>(
 /// Standard deviation of the speed between polls at the duty in force.
 fn speed_noise<L: Law>(guard: &mut ExperimentGuard<'_, L>, polls: usize) -> Result<f64, Cause> {
     let mut speeds = Vec::new();
-    while speeds.len() < NOISE_POLLS {
+    while speeds.len() < RELAY.noise_polls {
         guard.poll(false)?;
         speeds.extend(guard.recent_speed(polls));
     }
@@ -157,8 +163,8 @@ fn switch<L: Law>(
     let begin_s = guard.now_s();
     let mut is_up = true;
     guard.duty(duties.1)?;
-    while ups.len() <= FIRST_CYCLES + CYCLES {
-        if guard.now_s() - begin_s > LONGEST_S {
+    while ups.len() <= LIMIT_CYCLE.first_cycles + LIMIT_CYCLE.cycles {
+        if guard.now_s() - begin_s > RELAY.longest_s {
             return Err(Cause::NoLimitCycle);
         }
         if guard.poll(false)?.is_none() {

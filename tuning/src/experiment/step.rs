@@ -6,15 +6,22 @@ use super::free::{rise_s, settle_at, tau_bounds};
 use crate::cause::Cause;
 use crate::experiment_guard::ExperimentGuard;
 use crate::law::Law;
+use crate::thresholds::thresholds;
 use serde::{Deserialize, Serialize};
 
-/// Half the height of the step, as duty, at the most; the duty above the starting one at the least; and the least height, below which the
-/// friction and not the motor would be measured.
-pub(super) const HALF_HEIGHT: f64 = 0.15;
-const ABOVE_START: f64 = 0.06;
-const LEAST_HALF: f64 = 0.04;
-/// Half of the 95 % interval of the gain, relative, beyond which the step tells nothing: the rules go with it one to one.
-const WIDEST: f64 = 0.10;
+thresholds! {
+    /// The step about a set duty: its height, and what is believed of it.
+    pub(crate) STEP: Thresholds {
+        /// Half the height of the step at the most, as a share of full duty.
+        half_height: f64 = 0.15,
+        /// How far the lower duty of the step is above the starting one at the least, as a share of full.
+        above_start: f64 = 0.06,
+        /// Half the height of the step at the least, as a share of full duty: below it the friction and not the motor would be measured.
+        least_half: f64 = 0.04,
+        /// Half of the 95 % interval of the gain, as a share of it, beyond which the step tells nothing: the rules go with it one to one.
+        widest: f64 = 0.10,
+    }
+}
 
 /// What a step read off.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -38,9 +45,9 @@ pub(super) fn about<L: Law>(
     duty: f64,
     half: f64,
 ) -> Result<(f64, f64), Cause> {
-    let (least, most) = (probe.start_duty + ABOVE_START, guard.options.max_duty);
+    let (least, most) = (probe.start_duty + STEP.above_start, guard.options.max_duty);
     let half = half.min(0.5 * (most - least));
-    if half < LEAST_HALF {
+    if half < STEP.least_half {
         return Err(Cause::NoRoomForStep);
     }
     let middle = duty.clamp(least + half, most - half);
@@ -58,7 +65,7 @@ pub fn run_step<L: Law>(
     guard.monitor.start_duty = probe.start_duty;
     guard.monitor.stall_amps = probe.stall_amps;
     guard.monitor.drive_limit = guard.drive_limit(probe.stall_amps);
-    let duties = about(guard, probe, duty, HALF_HEIGHT)?;
+    let duties = about(guard, probe, duty, STEP.half_height)?;
     let from_s = guard.now_s();
     let below = settle_at(guard, duties.0)?;
     let rise = rise_s(guard, from_s, below.speed);
@@ -76,7 +83,7 @@ pub fn run_step<L: Law>(
     // Of a mean of two, and of one.
     let doubt = (above.interval * above.speed)
         .hypot(0.5 * (below.interval * below.speed).hypot(again.interval * again.speed));
-    if gain <= 0.0 || doubt > WIDEST * gain * height {
+    if gain <= 0.0 || doubt > STEP.widest * gain * height {
         return Err(Cause::StepUnclear);
     }
     Ok(StepRun {

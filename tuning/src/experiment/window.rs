@@ -1,36 +1,46 @@
 //! The experiment inside a travel window: to and fro at two duties, never at full speed.
 
 use super::Probe;
-use super::step::{HALF_HEIGHT, about};
+use super::step::{STEP, about};
 use crate::cause::Cause;
 use crate::experiment_guard::ExperimentGuard;
 use crate::law::Law;
+use crate::thresholds::thresholds;
 use serde::{Deserialize, Serialize};
 
-/// Switches at each of the two duties.
-const SWITCHES: usize = 10;
-/// Duties above the starting one.
-const DUTIES: [f64; 2] = [0.22, 0.50];
-/// Where the axis is to turn round, as a share of the window: as long as nothing is known of its stopping distance, and later.
-const FIRST_TURN_AT: f64 = 0.20;
-const TURN_AT: f64 = 0.25;
-/// How often a run that the guard ended is begun anew, and what it then uses of the width, over what it used before.
-const NARROWER: usize = 1;
-const NARROWER_SHARE: f64 = 0.8;
-/// How near to the end it may have come for that, as a share of the width from the middle.
-const NEAREST_SHARE: f64 = 0.45;
-/// Time until a new duty acts, s, and the share of the distance from rest that the first stop may take.
-const ACTS_S: f64 = 0.03;
-const FIRST_SHARE: f64 = 0.7;
-/// Duty above the starting one for going somewhere, and how far its end is looked ahead for, s.
-const GOING_DUTY: f64 = 0.05;
-const GOING_AHEAD_S: f64 = 0.05;
-/// Longest time, s.
-const LONGEST_S: f64 = 25.0;
-/// A wide window is not used to its ends by a slow axis: longest travel in one direction once the speed is steady, s, and what it
-/// changes by then at the most.
-const LONGEST_HALF_CYCLE_S: f64 = 0.7;
-const STEADY: f64 = 0.08;
+thresholds! {
+    /// The strokes within a travel: where they turn, and how long they go on.
+    WINDOW: Thresholds {
+        /// Switches at each of the two duties.
+        switches: usize = 10,
+        /// Duties above the starting one, as shares of full.
+        duties: [f64; 2] = [0.22, 0.50],
+        /// How far from the middle the axis is to turn round as long as nothing is known of its stopping distance, as a share of the window.
+        first_turn_at: f64 = 0.20,
+        /// How far from the middle it is to turn round later, as a share of the window.
+        turn_at: f64 = 0.25,
+        /// How often a run that the guard ended is begun anew.
+        narrower: usize = 1,
+        /// What it then uses of the width, as a share of what it used before.
+        narrower_share: f64 = 0.8,
+        /// How far from the middle the axis may have come for that, as a share of the width.
+        nearest_share: f64 = 0.45,
+        /// Time until a new duty acts, in seconds.
+        acts_s: f64 = 0.03,
+        /// Share of the distance from rest that the first stop may take.
+        first_share: f64 = 0.7,
+        /// Duty above the starting one for going somewhere, as a share of full.
+        going_duty: f64 = 0.05,
+        /// How far ahead the end of that way is looked for, in seconds.
+        going_ahead_s: f64 = 0.05,
+        /// Longest time for the strokes, and for going somewhere, in seconds.
+        longest_s: f64 = 25.0,
+        /// Longest travel in one direction once the speed is steady, in seconds: a wide window is not used to its ends by a slow axis.
+        longest_half_cycle_s: f64 = 0.7,
+        /// The most that a steady speed changes by over twelve polls, as a share of the top speed.
+        steady: f64 = 0.08,
+    }
+}
 
 /// What the window run read off.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -55,22 +65,24 @@ pub fn run_window<L: Law>(
     width: f64,
     about_duty: Option<f64>,
 ) -> Result<WindowRun, Cause> {
-    let chosen = about_duty.map(|duty| about(guard, probe, duty, HALF_HEIGHT)).transpose()?;
-    let usual = DUTIES.map(|above| (probe.start_duty + above).min(guard.options.max_duty));
+    let chosen = about_duty.map(|duty| about(guard, probe, duty, STEP.half_height)).transpose()?;
+    let usual = WINDOW.duties.map(|above| (probe.start_duty + above).min(guard.options.max_duty));
     let duties = chosen.map_or(usual, |(low, high)| [low, high]);
     guard.monitor.start_duty = probe.start_duty;
     guard.monitor.stall_amps = probe.stall_amps;
     guard.monitor.drive_limit = guard.drive_limit(probe.stall_amps);
     guard.poll_for(0.05, false)?;
     let middle = guard.points.last().map_or(0.0, |p| p.counts);
-    let mut turn = Turn { acts_s: ACTS_S, last: None, share: 1.0 };
-    for _ in 0..NARROWER {
+    let mut turn = Turn { acts_s: WINDOW.acts_s, last: None, share: 1.0 };
+    for _ in 0..WINDOW.narrower {
         match oscillate(guard, duties, (middle, width), &mut turn) {
-            Err(Cause::TravelLimit) if (guard.turned_at_counts() - middle).abs() < NEAREST_SHARE * width => {
+            Err(Cause::TravelLimit)
+                if (guard.turned_at_counts() - middle).abs() < WINDOW.nearest_share * width =>
+            {
                 // The guard brought it to rest before the end. What it learned of the stopping distance stays, and it keeps farther away.
                 guard.come_to_rest()?;
                 go_to(guard, probe, middle)?;
-                turn.share *= NARROWER_SHARE;
+                turn.share *= WINDOW.narrower_share;
             }
             other => return other.map(|run| WindowRun { step_duties: chosen, ..run }),
         }
@@ -99,14 +111,14 @@ pub fn go_to<L: Law>(guard: &mut ExperimentGuard<'_, L>, probe: &Probe, position
     let begin = guard.now_s();
     let here = |guard: &ExperimentGuard<'_, L>| guard.points.last().map_or(0.0, |p| p.counts);
     let direction = (position - here(guard)).signum();
-    guard.duty((probe.start_duty + GOING_DUTY).min(guard.options.max_duty) * direction)?;
+    guard.duty((probe.start_duty + WINDOW.going_duty).min(guard.options.max_duty) * direction)?;
     loop {
         guard.poll(false)?;
-        let ahead = guard.recent_speed(2).unwrap_or(0.0) * GOING_AHEAD_S;
+        let ahead = guard.recent_speed(2).unwrap_or(0.0) * WINDOW.going_ahead_s;
         if (position - here(guard) - ahead) * direction <= 0.0 {
             break;
         }
-        if guard.now_s() - begin > LONGEST_S {
+        if guard.now_s() - begin > WINDOW.longest_s {
             return Err(Cause::TimeLimit);
         }
     }
@@ -135,7 +147,7 @@ impl Turn {
                 distance * ratio * ratio.max(1.0)
             }
             // It needs no longer to stop than it needed to start.
-            None => speed * self.acts_s + FIRST_SHARE * since_rest.max(0.0),
+            None => speed * self.acts_s + WINDOW.first_share * since_rest.max(0.0),
         }
     }
 
@@ -162,8 +174,8 @@ fn oscillate_at<L: Law>(
     let mut switches = 0;
     let (mut switched_at, mut switch_speed, mut farthest) = (start, 0.0_f64, 0.0_f64);
     let mut since_s = guard.now_s();
-    while switches < SWITCHES {
-        if guard.now_s() - run.from_s > LONGEST_S {
+    while switches < WINDOW.switches {
+        if guard.now_s() - run.from_s > WINDOW.longest_s {
             return Ok(());
         }
         let Some(point) = guard.poll(false)? else { continue };
@@ -178,9 +190,10 @@ fn oscillate_at<L: Law>(
         }
         let turned_at = switched_at - direction * farthest;
         let runs_on = turn.stopping_distance(speed * direction, (point.counts - turned_at) * direction);
-        let is_steady =
-            guard.recent_speed(12).is_some_and(|before| (speed - before).abs() < STEADY * run.top_speed);
-        let is_long = point.t - since_s > LONGEST_HALF_CYCLE_S && is_steady;
+        let is_steady = guard
+            .recent_speed(12)
+            .is_some_and(|before| (speed - before).abs() < WINDOW.steady * run.top_speed);
+        let is_long = point.t - since_s > WINDOW.longest_half_cycle_s && is_steady;
         if is_long || from_middle * direction + runs_on >= turn_at(turn) * width {
             since_s = point.t;
             if switches > 0 {
@@ -199,7 +212,7 @@ fn oscillate_at<L: Law>(
 }
 
 fn turn_at(turn: &Turn) -> f64 {
-    turn.share * if turn.last.is_some() { TURN_AT } else { FIRST_TURN_AT }
+    turn.share * if turn.last.is_some() { WINDOW.turn_at } else { WINDOW.first_turn_at }
 }
 
 fn learn<L: Law>(guard: &mut ExperimentGuard<'_, L>, turn: &mut Turn, speed: f64, distance: f64, duty: f64) {

@@ -2,16 +2,22 @@
 
 use super::{ExperimentGuard, retried, wait_for_rest};
 use crate::cause::{Cause, Whose};
-use crate::current_silence::NO_CURRENT_AMPS;
+use crate::current_silence::SILENCE;
 use crate::law::Law;
 use crate::motor_monitor::MotorMonitor;
 use crate::pace::{Late, Pace};
 use crate::poll::{Drive, Input, Point};
+use crate::thresholds::thresholds;
 
-/// Readings of the current that are looked at before a fault is named by it, and how far above the highest one at rest they must be:
-/// noise that reached 1 among the dozen readings at rest does not have its middle at 3.
-const DRIVEN_READINGS: usize = 6;
-const ABOVE_REST: f64 = 3.0;
+thresholds! {
+    /// Which readings of a motor that is driven count as evidence.
+    EVIDENCE: Thresholds {
+        /// Readings of the current that are looked at before a fault is named by it.
+        driven_readings: usize = 6,
+        /// How many times the highest reading at rest their median must be: noise that reached 1 among the dozen readings at rest does not have its middle at 3.
+        above_rest: f64 = 3.0,
+    }
+}
 
 impl<L: Law> ExperimentGuard<'_, L> {
     /// What a run is refused for. A cause that names the machine stands only if all answers were on time, since the bounds of the guard
@@ -118,14 +124,14 @@ impl<L: Law> ExperimentGuard<'_, L> {
     /// Whether the current of the driven motor, as last read, could be the noise of readings at rest.
     fn is_current_unclear(&self) -> bool {
         let noise_amps = self.monitor.highest_rest_amps;
-        if noise_amps <= NO_CURRENT_AMPS {
+        if noise_amps <= SILENCE.no_current_amps {
             return false;
         }
         let is_driven =
             |point: &&Point| self.monitor.duty_at(point.t).abs() > self.monitor.start_duty.max(0.03);
         let driven = self.points.iter().rev().filter(is_driven).filter_map(|point| point.amps);
-        let mut driven: Vec<f64> = driven.map(f64::abs).take(DRIVEN_READINGS).collect();
+        let mut driven: Vec<f64> = driven.map(f64::abs).take(EVIDENCE.driven_readings).collect();
         driven.sort_by(f64::total_cmp);
-        driven.get(driven.len() / 2).is_none_or(|amps| *amps <= ABOVE_REST * noise_amps)
+        driven.get(driven.len() / 2).is_none_or(|amps| *amps <= EVIDENCE.above_rest * noise_amps)
     }
 }

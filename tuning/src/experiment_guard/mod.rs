@@ -4,11 +4,11 @@
 //! window, stalls, lost encoders and open motors before the experiment sees it.
 
 mod commands;
-mod evidence;
-mod polling;
-mod silence;
-mod travel;
-mod ways_out;
+pub(crate) mod evidence;
+pub(crate) mod polling;
+pub(crate) mod silence;
+pub(crate) mod travel;
+pub(crate) mod ways_out;
 
 use crate::axis::{AMPS_PER_RAW, Axis, AxisError, Want};
 use crate::cause::Cause;
@@ -18,6 +18,7 @@ use crate::open_loop_record::Actuation;
 use crate::pace::{Late, Pace};
 pub use crate::poll::{Drive, Input, Point};
 use crate::setup::{LoopAxis, Setup};
+use crate::thresholds::thresholds;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
@@ -26,11 +27,17 @@ use std::time::Duration;
 /// anyway.
 pub const RUN_STREAM_TIMEOUT_MS: u32 = 200;
 
-/// How long a braked motor may take to stand, and how often it is looked at.
-const LONGEST_REST: Duration = Duration::from_secs(3);
-const REST_LOOK: Duration = Duration::from_millis(40);
-/// How often stretches of a run are done again: on a computer with six busy programs beside it one in ten is late.
-const LATE_TRIES: u32 = 4;
+thresholds! {
+    /// How a motor is brought to rest, and how often a late answer is asked for again.
+    GUARD: Thresholds {
+        /// How long a braked motor may take to stand.
+        longest_rest: Duration = Duration::from_secs(3),
+        /// Time between two looks at whether it stands.
+        rest_look: Duration = Duration::from_millis(40),
+        /// How often stretches of a run are done again: on a computer with six busy programs beside it one in ten is late.
+        late_tries: u32 = 4,
+    }
+}
 
 /// What the guard has to keep to.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -74,7 +81,7 @@ impl Default for GuardOptions {
             max_amps: None,
             clear_winding: false,
             weighs_evidence: true,
-            late_tries: LATE_TRIES,
+            late_tries: GUARD.late_tries,
         }
     }
 }
@@ -261,7 +268,7 @@ impl<'a, L: Law> ExperimentGuard<'a, L> {
 
 /// Waits until a braked motor stands, for a few seconds at the most: where duty is a current, duty 0 no longer brakes it.
 pub fn wait_for_rest<A: Axis + ?Sized>(axis: &mut A) {
-    let until = axis.now() + LONGEST_REST;
+    let until = axis.now() + GUARD.longest_rest;
     let mut before = None;
     while axis.now() < until {
         let counts = axis.sample(Want::default()).ok().map(|sample| sample.counts);
@@ -269,7 +276,7 @@ pub fn wait_for_rest<A: Axis + ?Sized>(axis: &mut A) {
             return;
         }
         before = counts.or(before);
-        let next = axis.now() + REST_LOOK;
+        let next = axis.now() + GUARD.rest_look;
         if axis.wait_until(next).is_err() {
             return;
         }

@@ -9,31 +9,41 @@ use crate::cause::Cause;
 use crate::law::Law;
 use crate::pace::quantile;
 use crate::poll::{Drive, Input, Point};
+use crate::thresholds::thresholds;
 use std::time::Duration;
 
-/// Time between close polls over that between the usual ones, where the line is that quick: counts and duty alone take two exchanges of four.
-const CLOSE_SHARE: f64 = 0.4;
-/// Readings beyond the highest current that end a run: how far, and how many in a row.
-const PEAK_OVER_LIMIT: f64 = 1.25;
-const PEAK_AMPS: f64 = 0.1;
-const BEYOND_POLLS: u32 = 3;
-/// Polls whose exchanges are the usual ones, and how much longer a prompt one may take, s.
-const USUAL_POLLS: usize = 17;
-const LATE_S: f64 = 0.004;
-/// Silence after which the link counts as lost, s, and so many polls in a row: on a slow line a few lost replies take as long.
-const LINK_LOST_S: f64 = 0.15;
-const LINK_LOST_POLLS: u32 = 5;
-/// How long after the last good reading a driven motor is off at the latest, s (SAFETY.md: a motion command lives 250 ms).
-const OFF_WITHIN_S: f64 = 0.25;
-/// The longest time between two readings with which that can be kept: one reading, one that is waited for in vain, and the command.
-const SLOWEST_READING_S: f64 = 0.1;
-/// Readings that show it: each of so many in a row would have to be late on a quicker line.
-const LINE_READINGS: usize = 5;
-/// Counts that began anew are told from a motor that moved by a jump of more than this many times what full speed makes in the time since the
-/// last poll: twice, since that time is known to a poll at each end and full speed to a few percent.
-const RESET_REACH: f64 = 2.0;
-/// Where hardly any time went by, so many counts are no jump: a step of the duty and the rounding of the time make a few.
-const RESET_COUNTS: f64 = 60.0;
+thresholds! {
+    /// What one poll may show: current, late answers, lost answers, a reset.
+    POLLING: Thresholds {
+        /// Time between close polls, as a share of that between the usual ones, where the line is that quick: counts and duty alone take two exchanges of four.
+        close_share: f64 = 0.4,
+        /// Reading beyond which the current was not held, as a multiple of the highest current that is allowed.
+        peak_over_limit: f64 = 1.25,
+        /// What is added to that, in amperes.
+        peak_amps: f64 = 0.1,
+        /// How many such readings in a row end a run.
+        beyond_polls: u32 = 3,
+        /// How many of the latest polls the usual time of an exchange is taken from.
+        usual_polls: usize = 17,
+        /// How much longer than the usual one a prompt exchange may take, in seconds.
+        late_s: f64 = 0.004,
+        /// Silence after which the link counts as lost, in seconds.
+        link_lost_s: f64 = 0.15,
+        /// Polls in a row that must have gone without a reply too: on a slow line a few lost replies take as long.
+        link_lost_polls: u32 = 5,
+        /// How long after the last good reading a driven motor is off at the latest, in seconds (SAFETY.md: a motion command lives 250 ms).
+        off_within_s: f64 = 0.25,
+        /// Longest time between two readings with which that can be kept, in seconds: one reading, one that is waited for in vain, and the command.
+        slowest_reading_s: f64 = 0.1,
+        /// Readings that show a line to be slower than that: each of so many in a row would have to be late on a quicker line.
+        line_readings: usize = 5,
+        /// Counts that began anew are told from a motor that moved by a jump of more than this many times what full speed makes in the time since the
+        /// last poll: twice, since that time is known to a poll at each end and full speed to a few percent.
+        reset_reach: f64 = 2.0,
+        /// Where hardly any time went by, so many counts are no jump: a step of the duty and the rounding of the time make a few.
+        reset_counts: f64 = 60.0,
+    }
+}
 
 impl<L: Law> ExperimentGuard<'_, L> {
     /// The next poll when its time has come; `None` when its reply was lost. `with_duty` reads the duty each time.
@@ -57,7 +67,7 @@ impl<L: Law> ExperimentGuard<'_, L> {
         let end = self.now_s() + seconds;
         while self.now_s() < end {
             let want = Want { duty: true, current: self.turn.is_multiple_of(4), volts: false };
-            self.poll_for_all_of(want, CLOSE_SHARE * self.options.poll_s)?;
+            self.poll_for_all_of(want, POLLING.close_share * self.options.poll_s)?;
         }
         Ok(())
     }
@@ -81,7 +91,7 @@ impl<L: Law> ExperimentGuard<'_, L> {
                 let since_s = *self.silent_since_s.get_or_insert(now_s);
                 self.silent_polls += 1;
                 let silent_s = self.now_s() - since_s;
-                let is_lost = silent_s > LINK_LOST_S && self.silent_polls >= LINK_LOST_POLLS;
+                let is_lost = silent_s > POLLING.link_lost_s && self.silent_polls >= POLLING.link_lost_polls;
                 if is_lost || self.cannot_wait(now_s) {
                     // Whose the silence was is asked when the motor has been stopped.
                     return Err(Cause::LinkLost);
@@ -158,10 +168,10 @@ impl<L: Law> ExperimentGuard<'_, L> {
         loop {
             let gaps = self.points.windows(2).map(|pair| pair[1].t - pair[0].t);
             let quickest_s = gaps.fold(f64::INFINITY, f64::min);
-            if quickest_s <= SLOWEST_READING_S {
+            if quickest_s <= POLLING.slowest_reading_s {
                 return Ok(());
             }
-            if self.points.len() > LINE_READINGS {
+            if self.points.len() > POLLING.line_readings {
                 let too_slow = Cause::LineTooSlow { reading_ms: (1e3 * quickest_s).round() as u32 };
                 return Err(self.pace.computer_late().map_or(too_slow, |late| self.answered_late(late)));
             }
@@ -178,18 +188,18 @@ impl<L: Law> ExperimentGuard<'_, L> {
         let next_s = now_s - began_s + self.options.poll_s + self.usual_exchange_s().unwrap_or(0.0);
         // Between experiments nobody asks for a while, which is no silence.
         let silent_s = now_s - last_s.max(began_s - 2.0 * self.options.poll_s);
-        self.setup.stream_timeout_ms.is_some() && is_driven && silent_s + next_s > OFF_WITHIN_S
+        self.setup.stream_timeout_ms.is_some() && is_driven && silent_s + next_s > POLLING.off_within_s
     }
 
     /// Whether an exchange took hardly longer than its predecessors: when the counts of a longer one were read is open, which would
     /// look like a jerk of the motor.
     fn is_prompt(&self, took_s: f64) -> bool {
-        self.usual_exchange_s().is_none_or(|usual| took_s <= usual + LATE_S)
+        self.usual_exchange_s().is_none_or(|usual| took_s <= usual + POLLING.late_s)
     }
 
     /// How long an exchange took of late, s: the one that a quarter were quicker than, since a busy host makes only longer ones.
     pub(super) fn usual_exchange_s(&self) -> Option<f64> {
-        let recent = &self.exchanges[self.exchanges.len().saturating_sub(USUAL_POLLS)..];
+        let recent = &self.exchanges[self.exchanges.len().saturating_sub(POLLING.usual_polls)..];
         let took_s: Vec<f64> = recent.iter().map(|exchange| exchange.1).collect();
         quantile(&took_s, 0.25)
     }
@@ -213,8 +223,9 @@ impl<L: Law> ExperimentGuard<'_, L> {
     /// The controller holds the current at its limit but for short peaks; what stays beyond it was not held.
     fn check_highest_current(&mut self, point: &Point) -> Result<(), Cause> {
         let (Some(most), Some(amps)) = (self.options.max_amps, point.amps) else { return Ok(()) };
-        self.beyond = if amps.abs() > PEAK_OVER_LIMIT * most + PEAK_AMPS { self.beyond + 1 } else { 0 };
-        if self.beyond >= BEYOND_POLLS { Err(Cause::OverCurrent) } else { Ok(()) }
+        self.beyond =
+            if amps.abs() > POLLING.peak_over_limit * most + POLLING.peak_amps { self.beyond + 1 } else { 0 };
+        if self.beyond >= POLLING.beyond_polls { Err(Cause::OverCurrent) } else { Ok(()) }
     }
 
     /// Whether the counts are near 0 where no motor could have gone to since the poll before: the controller was reset, and its gains and its
@@ -230,7 +241,7 @@ impl<L: Law> ExperimentGuard<'_, L> {
         let full_speed = self.monitor.full_speed;
         let took_before_s = self.exchanges.last().map_or(0.0, |exchange| exchange.1);
         let longest_s = counts_at.received.as_secs_f64() - self.epoch_s - before_s + 0.5 * took_before_s;
-        let reach = RESET_REACH * full_speed * longest_s + RESET_COUNTS;
+        let reach = POLLING.reset_reach * full_speed * longest_s + POLLING.reset_counts;
         let step = point.counts - counts;
         let gathers_speed = self.monitor.tau_bounds_s.is_none()
             && matches!(self.drives.last(), Some(Drive { input: Input::Duty(duty), .. }) if duty * step > 0.0);

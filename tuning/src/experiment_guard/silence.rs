@@ -8,12 +8,18 @@ use crate::axis::{AxisError, Want};
 use crate::cause::Cause;
 use crate::law::Law;
 use crate::pace::Late;
+use crate::thresholds::thresholds;
 use std::time::Duration;
 
-/// How often a silent controller is asked again, each time for as long as the line waits for a reply, and for how long at the least, s: a
-/// computer or a radio that stands still for a third of a second comes back within that.
-const ASKED_AGAIN: u32 = 5;
-const ASKED_AGAIN_S: f64 = 0.5;
+thresholds! {
+    /// How often and how long an answer is asked for again.
+    UNANSWERED: Thresholds {
+        /// How often a silent controller is asked again at the least, each time for as long as the line waits for a reply.
+        asked_again: u32 = 5,
+        /// For how long it is asked at the least, in seconds: a computer or a radio that stands still for a third of a second comes back within that.
+        asked_again_s: f64 = 0.5,
+    }
+}
 
 /// What came of asking.
 enum Answer {
@@ -56,7 +62,7 @@ impl<L: Law> ExperimentGuard<'_, L> {
                 Err(_) => return Answer::Ended(Cause::LinkLost),
             }
         }
-        let until = self.axis.now() + Duration::from_secs_f64(ASKED_AGAIN_S);
+        let until = self.axis.now() + Duration::from_secs_f64(UNANSWERED.asked_again_s);
         let mut asked = 0;
         loop {
             let answer = self.axis.sample(Want::default());
@@ -78,7 +84,7 @@ impl<L: Law> ExperimentGuard<'_, L> {
                 Err(AxisError::Stopped) => return Answer::Ended(Cause::Stopped),
                 Err(_) => return Answer::Ended(Cause::LinkLost),
             }
-            if asked >= ASKED_AGAIN && now >= until {
+            if asked >= UNANSWERED.asked_again && now >= until {
                 return Answer::Ended(Cause::LinkLost);
             }
             if self.axis.wait_until(now + Duration::from_secs_f64(self.options.poll_s)).is_err() {

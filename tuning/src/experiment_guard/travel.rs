@@ -5,18 +5,26 @@ use crate::axis::{AxisError, FULL_DUTY_RAW, Want};
 use crate::cause::Cause;
 use crate::law::Law;
 use crate::poll::{Drive, Input, Point};
+use crate::thresholds::thresholds;
 use std::time::Duration;
 
-/// Time a duty takes to change its sign, as far as it counts for the stopping distance, s; and the longest that a motion is driven against.
-const TURNING_S: f64 = 0.03;
-pub(super) const LONGEST_TURN_S: f64 = 2.0;
-/// Position limits of an axis that turns freely and has none: so long at full speed to either side of where it stood, s, up to whole steps, counts.
-const FREE_REACH_S: f64 = 60.0;
-const REACH_STEP: f64 = 1_000.0;
-/// How much longer than computed a stopping distance may be.
-const STOPPING_DOUBT: f64 = 1.15;
-/// Time that a lost command costs before it is sent again, s.
-const RETRY_S: f64 = 0.010;
+thresholds! {
+    /// When a motor has to turn back to stay within its travel.
+    pub(crate) TRAVEL: Thresholds {
+        /// Time that a duty takes to change its sign, as far as it counts for the stopping distance, in seconds.
+        turning_s: f64 = 0.03,
+        /// Longest time that a motion is driven against, in seconds.
+        longest_turn_s: f64 = 2.0,
+        /// Position limits of an axis that turns freely and has none: the way of so many seconds at full speed to either side of where it stood.
+        free_reach_s: f64 = 60.0,
+        /// Step to which that way is rounded up, in counts.
+        reach_step: f64 = 1_000.0,
+        /// How much longer than computed a stopping distance may be, as a factor.
+        stopping_doubt: f64 = 1.15,
+        /// Time that a lost command costs before it is sent again, in seconds.
+        retry_s: f64 = 0.010,
+    }
+}
 
 impl<L: Law> ExperimentGuard<'_, L> {
     /// How much room there is on either side, as twice the shorter distance to an end of the travel window, counts.
@@ -43,7 +51,7 @@ impl<L: Law> ExperimentGuard<'_, L> {
         }
         let (low, high) = L::position_limits(&self.setup.held)?;
         // The casts saturate.
-        let reach = ((FREE_REACH_S * qpps / REACH_STEP).ceil() * REACH_STEP) as i64;
+        let reach = ((TRAVEL.free_reach_s * qpps / TRAVEL.reach_step).ceil() * TRAVEL.reach_step) as i64;
         (low >= high).then(|| (self.origin_counts() - reach, self.origin_counts() + reach))
     }
 
@@ -64,11 +72,13 @@ impl<L: Law> ExperimentGuard<'_, L> {
     fn check_stopping_distance(&mut self, point: &Point, speed: f64) -> Result<(), Cause> {
         let Some((low, high)) = self.travel_counts() else { return Ok(()) };
         let runs_on = match self.monitor.stopping_counts(speed.abs(), self.options.max_duty) {
-            Some(counts) => STOPPING_DOUBT * counts * speed.signum() + speed * TURNING_S,
+            Some(counts) => TRAVEL.stopping_doubt * counts * speed.signum() + speed * TRAVEL.turning_s,
             // From rest a motor needs no longer distance to stop than it had to start.
-            None => 0.7 * self.distance_since_drive(point) + speed * TURNING_S.max(self.monitor.stopping_s),
+            None => {
+                0.7 * self.distance_since_drive(point) + speed * TRAVEL.turning_s.max(self.monitor.stopping_s)
+            }
         };
-        let rest = point.counts + speed * (self.options.poll_s + RETRY_S) + runs_on;
+        let rest = point.counts + speed * (self.options.poll_s + TRAVEL.retry_s) + runs_on;
         if (rest > high && speed > 0.0) || (rest < low && speed < 0.0) {
             self.turn_back(speed);
             return Err(Cause::TravelLimit);
@@ -121,7 +131,7 @@ impl<L: Law> ExperimentGuard<'_, L> {
         if retried(|| self.axis.drive_duty(raw)).is_err() {
             return;
         }
-        let until = self.axis.now() + Duration::from_secs_f64(LONGEST_TURN_S);
+        let until = self.axis.now() + Duration::from_secs_f64(TRAVEL.longest_turn_s);
         let mut before: Option<Point> = None;
         while self.axis.now() < until {
             match self.axis.sample(Want::default()).map(|sample| self.point_of(&sample)) {

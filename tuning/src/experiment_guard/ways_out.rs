@@ -1,19 +1,26 @@
 //! The ways out: to rest, to the name of a fault, and back to what the controller held.
 
-use super::travel::LONGEST_TURN_S;
+use super::travel::TRAVEL;
 use super::{ExperimentGuard, cause_of, retried, wait_for_rest};
 use crate::axis::{AxisError, Want};
 use crate::cause::Cause;
-use crate::diagnosis::{DIAGNOSIS_S, diagnose};
+use crate::diagnosis::{DIAGNOSIS, diagnose};
 use crate::law::{Ending, Law};
 use crate::poll::Point;
+use crate::thresholds::thresholds;
 use std::time::Duration;
 
-/// A motor that runs on for longer than this is heavy, s; the duty above the starting one that brings it to rest, and how long it
-/// is watched then, s.
-const HEAVY_S: f64 = 0.05;
-const RESTING_DUTY: f64 = 0.25;
-const RESTING_S: f64 = 0.15;
+thresholds! {
+    /// How a motor is held and brought to rest when a run ends early.
+    WAYS_OUT: Thresholds {
+        /// Time that a motor runs on for beyond which it is heavy, in seconds.
+        heavy_s: f64 = 0.05,
+        /// Duty above the starting one that brings a heavy motor to rest, as a share of full.
+        resting_duty: f64 = 0.25,
+        /// How long a motor is watched then, in seconds.
+        resting_s: f64 = 0.15,
+    }
+}
 
 impl<L: Law> ExperimentGuard<'_, L> {
     /// The last act on every way out: duty 0 three times; the old gains, unless the run keeps its own; the old time-out.
@@ -52,18 +59,18 @@ impl<L: Law> ExperimentGuard<'_, L> {
     /// Brings the motor to rest: a heavy one runs on for long when it is only braked, so it is driven against first.
     pub fn come_to_rest(&mut self) -> Result<(), Cause> {
         let speed = self.recent_speed(2).unwrap_or(0.0);
-        let heavy =
-            self.monitor.stopping_s > HEAVY_S || self.monitor.tau_bounds_s.is_some_and(|tau| tau.1 > HEAVY_S);
+        let heavy = self.monitor.stopping_s > WAYS_OUT.heavy_s
+            || self.monitor.tau_bounds_s.is_some_and(|tau| tau.1 > WAYS_OUT.heavy_s);
         if heavy && speed.abs() > 0.02 * self.monitor.full_speed {
-            let duty = (self.monitor.start_duty + RESTING_DUTY).min(self.options.max_duty);
+            let duty = (self.monitor.start_duty + WAYS_OUT.resting_duty).min(self.options.max_duty);
             self.duty(-speed.signum() * duty)?;
-            let until = self.now_s() + LONGEST_TURN_S;
+            let until = self.now_s() + TRAVEL.longest_turn_s;
             while self.now_s() < until && self.recent_speed(2).is_some_and(|now| now * speed > 0.0) {
                 self.poll(false)?;
             }
         }
         self.duty(0.0)?;
-        self.poll_for(RESTING_S, false)
+        self.poll_for(WAYS_OUT.resting_s, false)
     }
 
     /// Takes the duty away and watches what the motor does then, which distinguishes the faults. `guess` stands where nothing more
@@ -79,7 +86,7 @@ impl<L: Law> ExperimentGuard<'_, L> {
         self.monitor.drive(alarm_s, 0.0);
         let mut after: Vec<Point> = self.points.last().copied().into_iter().collect();
         let mut heard = 0;
-        while self.now_s() < alarm_s + DIAGNOSIS_S {
+        while self.now_s() < alarm_s + DIAGNOSIS.diagnosis_s {
             let next = self.axis.now() + Duration::from_secs_f64(self.options.poll_s);
             match self.axis.sample(Want { current: true, ..Want::default() }) {
                 Ok(sample) => {

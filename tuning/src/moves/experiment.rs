@@ -9,31 +9,45 @@ use crate::experiment_guard::{ExperimentGuard, Input};
 use crate::gains::{Gains, Pid};
 use crate::law::Law;
 use crate::request::Excitation;
+use crate::thresholds::thresholds;
 
-/// The ladder: share of the drive of its first rung, from rung to rung, and length of its first move, from rung to rung, counts.
-const FIRST_PUSH: f64 = 0.008;
-const MORE_PUSH: f64 = 1.5;
-const FIRST_COUNTS: f64 = 100.0;
-const LONGER: f64 = 1.35;
-/// How long a motor may take to start, s, and from how many counts on it moves. It has turned the other way by so many more.
-const START_S: f64 = 0.16;
-const MOVED_COUNTS: f64 = 4.0;
-const REVERSED_COUNTS: f64 = 6.0;
-/// How long a new gain is watched before the axis is moved with it, s, and the counts that it may settle by.
-const HOLD_S: f64 = 0.1;
-const HELD_COUNTS: f64 = 6.0;
-/// Share of the room on the farther side that a stroke may use.
-const ROOM_SHARE: f64 = 0.4;
-/// Polls within so many counts of each other are a standstill.
-const STILL_POLLS: usize = 4;
-const STILL_COUNTS: f64 = 1.0;
-/// How long after a command the first poll comes, s: on a line without jitter all polls would else see the same places of every move.
-const PHASES_S: [f64; 5] = [0.0, 0.012, 0.004, 0.016, 0.008];
-/// A command that takes so much longer than the quickest was sent again, s; and the fewest polls of a piece.
-const RETRIED_S: f64 = 0.035;
-const LEAST_POINTS: usize = 8;
-/// A stroke that goes so far beyond its end, over its length, is a loop that swings.
-const SWINGS: f64 = 0.5;
+thresholds! {
+    /// The strokes of a motor that takes no duty: their lengths, and what counts as motion.
+    MOVES_EXPERIMENT: Thresholds {
+        /// Drive that the first rung of the ladder asks for, as a share of full.
+        first_push: f64 = 0.008,
+        /// Factor of the drive from rung to rung.
+        more_push: f64 = 1.5,
+        /// Length of the move on the first rung, in counts.
+        first_counts: f64 = 100.0,
+        /// Factor of the length from rung to rung.
+        longer: f64 = 1.35,
+        /// How long a motor may take to start, in seconds.
+        start_s: f64 = 0.16,
+        /// Counts from which on it moves.
+        moved_counts: f64 = 4.0,
+        /// Counts against the move from which on it has turned the other way.
+        reversed_counts: f64 = 6.0,
+        /// How long a new gain is watched before the axis is moved with it, in seconds.
+        hold_s: f64 = 0.1,
+        /// Counts by which the axis may settle in that time.
+        held_counts: f64 = 6.0,
+        /// Share of the room on the farther side, or of the width of a window, that a stroke may use.
+        room_share: f64 = 0.4,
+        /// How many polls in a row tell a standstill.
+        still_polls: usize = 4,
+        /// Counts within which these polls lie of each other.
+        still_counts: f64 = 1.0,
+        /// How long after a command the first poll comes, in seconds: on a line without jitter all polls would else see the same places of every move.
+        phases_s: [f64; 5] = [0.0, 0.012, 0.004, 0.016, 0.008],
+        /// A command that takes so much longer than the quickest, in seconds, was sent again.
+        retried_s: f64 = 0.035,
+        /// A piece of a record has more polls than this, or it is left out.
+        least_points: usize = 8,
+        /// A stroke that goes beyond its end by more than this share of its length is a loop that swings.
+        swings: f64 = 0.5,
+    }
+}
 
 /// Where the axis may be moved.
 #[derive(Clone, Copy, Debug)]
@@ -81,7 +95,7 @@ impl Ground {
         let longest = guard.facts.longest_move_counts;
         let widest = match excitation {
             Excitation::Free => longest,
-            Excitation::Window(width) => (ROOM_SHARE * width).min(longest),
+            Excitation::Window(width) => (MOVES_EXPERIMENT.room_share * width).min(longest),
         };
         let start = guard.points.last().map_or(0.0, |point| point.counts);
         let Some((low, high)) = guard.travel_counts() else {
@@ -89,8 +103,12 @@ impl Ground {
         };
         let (side, room) =
             if high - start >= start - low { (1.0, high - start) } else { (-1.0, start - low) };
-        let most = (ROOM_SHARE * room).min(widest);
-        if most < 2.0 * REVERSED_COUNTS { Err(Cause::NarrowTravel) } else { Ok(Self { start, side, most }) }
+        let most = (MOVES_EXPERIMENT.room_share * room).min(widest);
+        if most < 2.0 * MOVES_EXPERIMENT.reversed_counts {
+            Err(Cause::NarrowTravel)
+        } else {
+            Ok(Self { start, side, most })
+        }
     }
 }
 
@@ -112,10 +130,10 @@ pub(super) fn hold<L: Law>(
         guard.write_all(&registers, true)?;
         guard.pause();
         let from = guard.points.len();
-        guard.poll_for(HOLD_S, false)?;
+        guard.poll_for(MOVES_EXPERIMENT.hold_s, false)?;
         let seen = &guard.points[from.min(guard.points.len())..];
         let moved = seen.first().zip(seen.last()).map_or(0.0, |(a, b)| b.counts - a.counts);
-        let Some(position) = wanted.position.filter(|_| moved.abs() > HELD_COUNTS) else {
+        let Some(position) = wanted.position.filter(|_| moved.abs() > MOVES_EXPERIMENT.held_counts) else {
             return Ok(registers);
         };
         let stiffer = law.rounded(&of_duty(2.0 * position.p, 2.0 * position.d), OF_DUTY);
@@ -132,7 +150,7 @@ pub(super) fn start<L: Law>(
     law: &L,
     ground: &Ground,
 ) -> Result<Started, Cause> {
-    let (mut push, mut counts) = (FIRST_PUSH, FIRST_COUNTS);
+    let (mut push, mut counts) = (MOVES_EXPERIMENT.first_push, MOVES_EXPERIMENT.first_counts);
     loop {
         let length = counts.min(ground.most).round();
         let registers = hold(guard, law, of_duty(push / length, 0.0))?;
@@ -142,18 +160,18 @@ pub(super) fn start<L: Law>(
         // To and fro about the start, towards the side with more room first.
         let way = if (from - ground.start) * ground.side > 0.0 { -ground.side } else { ground.side };
         guard.position(from + way * length, u32::MAX)?;
-        let until_s = guard.now_s() + START_S;
+        let until_s = guard.now_s() + MOVES_EXPERIMENT.start_s;
         while guard.now_s() < until_s {
             let Some(point) = guard.poll(false)? else { continue };
             let moved = (point.counts - from) * way;
-            if moved <= -REVERSED_COUNTS {
+            if moved <= -MOVES_EXPERIMENT.reversed_counts {
                 // The loop drives it away: it gets no drive before anything else.
                 let held = guard.setup.held;
                 let none = law.registers(&held, &Gains::default(), OF_DUTY, None);
                 guard.write_all(&none, true)?;
                 return Err(Cause::EncoderReversed);
             }
-            if moved >= MOVED_COUNTS {
+            if moved >= MOVES_EXPERIMENT.moved_counts {
                 guard.duty(0.0)?;
                 return Ok(Started { gain, push: (gain * length).min(1.0) });
             }
@@ -162,7 +180,7 @@ pub(super) fn start<L: Law>(
         if gain * length >= guard.options.max_duty || push >= guard.options.max_duty {
             return Err(Cause::NothingCounted);
         }
-        (push, counts) = (push * MORE_PUSH, counts * LONGER);
+        (push, counts) = (push * MOVES_EXPERIMENT.more_push, counts * MOVES_EXPERIMENT.longer);
     }
 }
 
@@ -184,14 +202,14 @@ pub(super) fn strokes<L: Law>(
         let asked_s = guard.now_s();
         guard.position(target, u32::MAX)?;
         given.push(Given { asked_s, took_s: guard.now_s() - asked_s, target });
-        guard.defer(PHASES_S[n % PHASES_S.len()]);
+        guard.defer(MOVES_EXPERIMENT.phases_s[n % MOVES_EXPERIMENT.phases_s.len()]);
         let until_s = guard.now_s() + longest_s;
         // Stays of uneven length: polls come at all phases of the moves.
         let least_s = guard.now_s() + 0.12 + 0.007 * (n % 4) as f64;
         while guard.now_s() < until_s {
             let Some(point) = guard.poll(false)? else { continue };
             let beyond = (point.counts - target) * (target - at).signum();
-            if beyond > SWINGS * (target - at).abs() + REVERSED_COUNTS {
+            if beyond > MOVES_EXPERIMENT.swings * (target - at).abs() + MOVES_EXPERIMENT.reversed_counts {
                 swings = true;
                 break;
             }
@@ -218,7 +236,7 @@ fn pieces<L: Law>(
     let mut all = Vec::new();
     let mut begin: Option<&Given> = given.first();
     for (n, one) in given.iter().enumerate().skip(1) {
-        if one.took_s > quickest_s + RETRIED_S {
+        if one.took_s > quickest_s + MOVES_EXPERIMENT.retried_s {
             all.extend(begin.and_then(|from| piece(guard, from, one.asked_s, registers)));
             begin = None;
         } else if begin.is_none() {
@@ -247,10 +265,18 @@ fn piece<L: Law>(
             Input::Duty(_) | Input::Speed(_) => None,
         });
     let moves: Vec<_> = std::iter::once((f64::NEG_INFINITY, from.target, 0.0)).chain(given).collect();
-    (moves.len() > 1 && points.len() > LEAST_POINTS).then_some(Stretch { points, moves, registers })
+    (moves.len() > 1 && points.len() > MOVES_EXPERIMENT.least_points).then_some(Stretch {
+        points,
+        moves,
+        registers,
+    })
 }
 
 fn is_still<L: Law>(guard: &ExperimentGuard<'_, L>) -> bool {
-    let Some(last) = guard.points.last_chunk::<STILL_POLLS>() else { return false };
-    last.iter().all(|point| (point.counts - last[0].counts).abs() <= STILL_COUNTS)
+    let Some(last) =
+        guard.points.len().checked_sub(MOVES_EXPERIMENT.still_polls).map(|from| &guard.points[from..])
+    else {
+        return false;
+    };
+    last.iter().all(|point| (point.counts - last[0].counts).abs() <= MOVES_EXPERIMENT.still_counts)
 }

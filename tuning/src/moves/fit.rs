@@ -7,6 +7,7 @@ use crate::fit::Fit;
 use crate::gains::Gains;
 use crate::law::Law;
 use crate::model::{Lag, PlantModel};
+use crate::thresholds::thresholds;
 use crate::ticks::{Setpoint, TickLoop};
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::storage::Owned;
@@ -14,31 +15,43 @@ use nalgebra::{DMatrix, DVector, Dyn, OMatrix, U6, Vector6};
 
 /// Gains are duties: a QPPS of 1 makes `P e` one.
 pub(super) const OF_DUTY: f64 = 1.0;
-/// Parameters: logarithms of gain and time constant, friction, load, time from a command's stamp to its work, lag of the loop. Their units, and the
-/// steps by which slopes are taken, in those.
+
+thresholds! {
+    /// The fit of motor, friction and lag to strokes: noises, priors and bounds.
+    MOVES_FIT: Thresholds {
+        /// Step by which slopes are taken, in units of each parameter.
+        slope_step: f64 = 0.05,
+        /// Prior standard deviation of the time from a command's stamp to its effect, in seconds.
+        offset_sd_s: f64 = 0.002,
+        /// Prior mean and standard deviation of the lag, in seconds.
+        lag_s: (f64, f64) = (0.0007, 0.0008),
+        /// Longest lag, in seconds.
+        longest_lag_s: f64 = 0.004,
+        /// Longest lag, in ticks of the loop, where that is shorter.
+        most_lag_ticks: f64 = 13.0,
+        /// Highest friction, and highest load either way, as a share of full duty.
+        most_friction: f64 = 0.6,
+        /// Standard deviation of a place from rounding, in counts.
+        rounded_counts: f64 = 0.5,
+        /// Standard deviation of the time stamp of a place, in seconds.
+        stamp_s: f64 = 0.000_7,
+        /// Standard deviation of what the model leaves out of a place, as a share of the length of the move: stiction, a springy shaft, the battery.
+        left_out: f64 = 0.006,
+        /// Ticks without any change of speed or drive after which there is none until the next move: more than a lag.
+        still_ticks: u32 = 20,
+        /// Standard deviations from which on a residual counts less and less.
+        knee: f64 = 3.0,
+        /// Relative change of misfit and parameters that ends a fit.
+        enough: f64 = 1e-5,
+        /// How far a parameter may lie outside its bounds, as a standard deviation in units of the parameter.
+        bound: f64 = 0.1,
+        /// How much larger than the least the misfit of a rate may be for it to be as likely, in units of the reduced chi-square (of 1 where that is less).
+        likely: f64 = 6.0,
+    }
+}
+
+/// Units of the parameters: logarithms of gain and time constant; friction and load, duties; time from a command's stamp to its effect and lag of the loop, s.
 const UNITS: [f64; 6] = [0.05, 0.05, 0.01, 0.01, 1e-3, 5e-4];
-const SLOPE_STEP: f64 = 0.05;
-/// What is known beforehand: standard deviation of the time to a command's work, s; mean and standard deviation of the lag, s.
-const OFFSET_SD_S: f64 = 0.002;
-const LAG_S: (f64, f64) = (0.0007, 0.0008);
-/// Longest lag, s, and in ticks, and the highest friction.
-const LONGEST_LAG_S: f64 = 0.004;
-const MOST_LAG_TICKS: f64 = 13.0;
-const MOST_FRICTION: f64 = 0.6;
-/// A place: rounding, counts; of the stamp, s; and what the model leaves out, over the length of the move: stiction, a springy shaft, the battery.
-const ROUNDED_COUNTS: f64 = 0.5;
-const STAMP_S: f64 = 0.000_7;
-const LEFT_OUT: f64 = 0.006;
-/// Ticks without any change of speed or drive after which there is none until the next move: more than a lag.
-const STILL_TICKS: u32 = 20;
-/// Standard deviations from which on a residual counts less and less.
-const KNEE: f64 = 3.0;
-/// Relative change of misfit and parameters that ends a fit.
-const ENOUGH: f64 = 1e-5;
-/// How hard a parameter is held within its bounds, units per standard deviation.
-const BOUND: f64 = 0.1;
-/// Rates whose misfit is no larger than the best by so many times its chi-square are as likely.
-const LIKELY: f64 = 6.0;
 
 /// Moves under some gains, from rest.
 #[derive(Clone, Debug)]
@@ -71,7 +84,7 @@ pub(super) struct Start(Vector6<f64>);
 impl Start {
     /// From a gain and a time constant.
     pub(super) fn of(gain_counts_per_s: f64, tau_s: f64, friction: f64) -> Self {
-        let values = [gain_counts_per_s.max(1.0).ln(), tau_s.ln(), friction, 0.0, 0.001, LAG_S.0];
+        let values = [gain_counts_per_s.max(1.0).ln(), tau_s.ln(), friction, 0.0, 0.001, MOVES_FIT.lag_s.0];
         Self(Vector6::from_fn(|n, _| values[n] / UNITS[n]))
     }
 
@@ -106,7 +119,7 @@ pub(super) fn fit_moves<L: Law>(
     }
     let best = found.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
     let chi_square = best.0 / readings as f64;
-    let likely = |misfit: f64| misfit <= best.0 + LIKELY * chi_square.max(1.0);
+    let likely = |misfit: f64| misfit <= best.0 + MOVES_FIT.likely * chi_square.max(1.0);
     let likely_hz = || found.iter().filter(|other| likely(other.0)).map(|other| other.1);
     let likely_hz = (likely_hz().min().unwrap_or(best.1), likely_hz().max().unwrap_or(best.1));
     let (model, offset_s, lag_s) = parts(&best.2.q, best.1);
@@ -125,8 +138,11 @@ pub(super) fn fit_moves<L: Law>(
 
 fn minimised<L: Law>(stretches: &[Stretch<L>], law: L, q: Vector6<f64>) -> Option<(f64, Problem<'_, L>)> {
     let problem = Problem { stretches, law, q };
-    let (problem, report) =
-        LevenbergMarquardt::new().with_patience(4).with_ftol(ENOUGH).with_xtol(ENOUGH).minimize(problem);
+    let (problem, report) = LevenbergMarquardt::new()
+        .with_patience(4)
+        .with_ftol(MOVES_FIT.enough)
+        .with_xtol(MOVES_FIT.enough)
+        .minimize(problem);
     report.objective_function.is_finite().then_some((2.0 * report.objective_function, problem))
 }
 
@@ -136,13 +152,13 @@ fn parts(q: &Vector6<f64>, rate_hz: u32) -> (PlantModel, f64, f64) {
     let model = PlantModel {
         gain_counts_per_s: value(0).clamp(0.0, 18.0).exp(),
         tau_s: value(1).clamp(-7.0, 2.5).exp(),
-        coulomb_duty: value(2).clamp(0.0, MOST_FRICTION),
-        load_duty: value(3).clamp(-MOST_FRICTION, MOST_FRICTION),
+        coulomb_duty: value(2).clamp(0.0, MOVES_FIT.most_friction),
+        load_duty: value(3).clamp(-MOVES_FIT.most_friction, MOVES_FIT.most_friction),
         drive_limit: None,
         brake_limit: None,
         sag: 0.0,
     };
-    let longest_s = LONGEST_LAG_S.min(MOST_LAG_TICKS / f64::from(rate_hz));
+    let longest_s = MOVES_FIT.longest_lag_s.min(MOVES_FIT.most_lag_ticks / f64::from(rate_hz));
     (model, value(4), value(5).clamp(0.0, longest_s))
 }
 
@@ -161,10 +177,10 @@ impl<L: Law> Problem<'_, L> {
             let gains = self.law.gains(&stretch.registers, OF_DUTY, true);
             follow(stretch, &self.law, &model, lag, &gains, offset_s, &mut all);
         }
-        all.push(offset_s / OFFSET_SD_S);
-        all.push((lag_s - LAG_S.0) / LAG_S.1);
+        all.push(offset_s / MOVES_FIT.offset_sd_s);
+        all.push((lag_s - MOVES_FIT.lag_s.0) / MOVES_FIT.lag_s.1);
         for (n, held) in [(2, model.coulomb_duty), (3, model.load_duty), (5, lag_s)] {
-            all.push((q[n] - held / UNITS[n]) / BOUND);
+            all.push((q[n] - held / UNITS[n]) / MOVES_FIT.bound);
         }
         DVector::from_vec(all)
     }
@@ -174,8 +190,8 @@ impl<L: Law> Problem<'_, L> {
         let columns: Vec<DVector<f64>> = (0..UNITS.len())
             .map(|n| {
                 let mut up = self.q;
-                up[n] += SLOPE_STEP;
-                (self.misfits(&up) - &here) / SLOPE_STEP
+                up[n] += MOVES_FIT.slope_step;
+                (self.misfits(&up) - &here) / MOVES_FIT.slope_step
             })
             .collect();
         DMatrix::from_columns(&columns)
@@ -241,7 +257,7 @@ fn follow<L: Law>(
         while t < *at {
             // What stands under a drive that stays goes on so until the next move.
             let next_s = moves.peek().map_or(f64::INFINITY, |given| given.0 + offset_s);
-            if still >= STILL_TICKS && next_s > t {
+            if still >= MOVES_FIT.still_ticks && next_s > t {
                 t = next_s.min(*at);
                 continue;
             }
@@ -260,16 +276,16 @@ fn follow<L: Law>(
         let share = (1.0 - (t - at) / tick_s).clamp(0.0, 1.0);
         let place = before.position + share * (twin.motion.position - before.position);
         let speed = twin.motion.speed;
-        let sd = ROUNDED_COUNTS.hypot(STAMP_S * speed).hypot(LEFT_OUT * length);
+        let sd = MOVES_FIT.rounded_counts.hypot(MOVES_FIT.stamp_s * speed).hypot(MOVES_FIT.left_out * length);
         into.push(soft((place - counts) / sd));
     }
 }
 
 /// A residual far out counts by its root (Huber).
 fn soft(residual: f64) -> f64 {
-    if residual.abs() <= KNEE {
+    if residual.abs() <= MOVES_FIT.knee {
         residual
     } else {
-        (2.0 * KNEE * residual.abs() - KNEE * KNEE).sqrt().copysign(residual)
+        (2.0 * MOVES_FIT.knee * residual.abs() - MOVES_FIT.knee * MOVES_FIT.knee).sqrt().copysign(residual)
     }
 }

@@ -4,8 +4,8 @@
 //! suit it tell it well, and the same with D tell how often the loop turns, since D is a time in turns. A stiff loop tells its lag. Every stretch goes
 //! into one fit ([`fit`]); the design is the one of other axes, in the steps that the registers have, and is tried by the same moves.
 
-mod experiment;
-mod fit;
+pub(crate) mod experiment;
+pub(crate) mod fit;
 
 use crate::cause::Cause;
 use crate::design::{Goal, Task, USUAL_OVERSHOOT, design_pd};
@@ -17,39 +17,52 @@ use crate::proposal::{design_for, propose};
 use crate::report::Report;
 use crate::request::{Identification, Method, Request};
 use crate::score::position_step;
+use crate::thresholds::thresholds;
 use crate::verify::check_moves;
 use experiment::{Ground, Started, hold, of_duty, start, strokes};
 use fit::{Found, Start, Stretch, fit_moves};
 
-/// The first strokes: what they may ask of the drive over what started the motor, and at the most; how often they grow where nothing came of them.
-const FIRST_PUSH: f64 = 3.0;
-const MOST_PUSH: f64 = 0.8;
-const FIRST_TRIES: usize = 6;
-/// Gain of the loop that suits a motor: its speed for a count's error, times its time constant. Half is a damping of 0.7.
-const SUITING: f64 = 0.5;
-/// What D adds to the damping of the motor in the strokes that tell the rate, over what it has by itself.
-const DAMPING: f64 = 1.0;
-/// Sensitivity of the loop that tells the lag.
-const CAREFUL_MS: f64 = 1.4;
-/// Shortest time that is taken for the time constant of a step, s, and the length of a stroke over that of the test.
-const LEAST_PUSH_RATIO: f64 = 5.0;
-/// Highest chi-square of a fit that is believed, and the loosest time constant, as standard deviation of its logarithm.
-const WORST_CHI_SQUARE: f64 = 100.0;
-const LOOSEST_TAU: f64 = 0.5;
-/// Misfit beyond which something swings or has backlash that the model knows nothing of, and what is then left of the sensitivity's excess.
-const ODD_CHI_SQUARE: f64 = 3.0;
-const ODD_SHARE: f64 = 0.6;
-/// Sensitivity that a design may have at a rate that is as likely, over that of its goal; how often it is made softer for that, and by how much.
-const OTHER_RATE_MS: f64 = 1.2;
-const SOFTENINGS: usize = 5;
-const SOFTER: f64 = 0.8;
-/// From the slowest to the quickest likely rate: more is an unknown one.
-const UNKNOWN_RATE: f64 = 2.5;
-/// Standard deviations of the lag that the worst one is longer.
-const LAG_DEVIATIONS: f64 = 2.0;
-
-const TO_AND_FRO: [f64; 4] = [1.0, 0.0, 0.4, 0.0];
-const BACK_AND_FORTH: [f64; 6] = [1.0, 0.0, 0.6, 0.0, 0.3, 0.0];
+thresholds! {
+    /// How strokes are repeated and judged until they suit a fit.
+    MOVES: Thresholds {
+        /// Drive that the first strokes may ask for, as a multiple of what started the motor.
+        first_push: f64 = 3.0,
+        /// Drive that the first strokes may ask for at the most, as a share of full.
+        most_push: f64 = 0.8,
+        /// How often the first strokes are tried: they grow where nothing came of them, and are softer where the loop swung.
+        first_tries: usize = 6,
+        /// Gain of the loop that suits a motor: its speed for a count's error, times its time constant. Half is a damping of 0.7.
+        suiting: f64 = 0.5,
+        /// Damping that D adds in the strokes that tell the rate, as a multiple of what the motor has by itself.
+        damping: f64 = 1.0,
+        /// Maximum sensitivity (Ms) of the loop that tells the lag.
+        careful_ms: f64 = 1.4,
+        /// Least drive that a stroke asks for, as a multiple of the friction, which must be a small part of it.
+        least_push_ratio: f64 = 5.0,
+        /// Highest reduced chi-square of a fit that is believed.
+        worst_chi_square: f64 = 100.0,
+        /// Loosest time constant of a fit that is believed, as the standard deviation of its logarithm.
+        loosest_tau: f64 = 0.5,
+        /// Reduced chi-square beyond which something swings or has backlash that the model knows nothing of.
+        odd_chi_square: f64 = 3.0,
+        /// What is then left of the excess of the goal's sensitivity over 1, as a share.
+        odd_share: f64 = 0.6,
+        /// Sensitivity that a design may have at a rate that is as likely, as a multiple of that of its goal.
+        other_rate_ms: f64 = 1.2,
+        /// How many designs are tried, each softer than the one before, until one keeps that.
+        softenings: usize = 5,
+        /// What is left of the excess of the goal's sensitivity over 1 from one of them to the next, as a share.
+        softer: f64 = 0.8,
+        /// Ratio of the quickest to the slowest likely rate beyond which the rate is unknown.
+        unknown_rate: f64 = 2.5,
+        /// By how many of its standard deviations the worst lag is longer than the likely one.
+        lag_deviations: f64 = 2.0,
+        /// Ends of the first strokes in turn, as shares of their length from the start.
+        to_and_fro: [f64; 4] = [1.0, 0.0, 0.4, 0.0],
+        /// Ends of the strokes that tell the rate and the lag in turn, as shares of their length from the start.
+        back_and_forth: [f64; 6] = [1.0, 0.0, 0.6, 0.0, 0.3, 0.0],
+    }
+}
 
 /// A whole run of such an axis, from the first move to gains that were tried.
 pub(crate) fn by_moves<L: Law>(
@@ -82,7 +95,7 @@ pub(crate) fn by_moves<L: Law>(
     if found.fit.model.load_duty.abs() > found.fit.model.coulomb_duty + 0.02 {
         report.causes.push(Cause::HeavyLoad);
     }
-    if f64::from(found.likely_hz.1) > UNKNOWN_RATE * f64::from(found.likely_hz.0) {
+    if f64::from(found.likely_hz.1) > MOVES.unknown_rate * f64::from(found.likely_hz.0) {
         report.causes.push(Cause::RateUnknown);
     }
     let request = &Request { law: task.law, ..*request };
@@ -124,12 +137,12 @@ fn first_strokes<L: Law>(
     started: &Started,
     stretches: &mut Vec<Stretch<L>>,
 ) -> Result<Found, Cause> {
-    let push = (FIRST_PUSH * started.push).min(MOST_PUSH.min(guard.options.max_duty));
+    let push = (MOVES.first_push * started.push).min(MOVES.most_push.min(guard.options.max_duty));
     let mut length = (push / started.gain).min(ground.most);
     let mut gain = push / length;
-    for _ in 0..FIRST_TRIES {
+    for _ in 0..MOVES.first_tries {
         let registers = hold(guard, law, of_duty(gain, 0.0))?;
-        let made = strokes(guard, ground, registers, (length, &TO_AND_FRO, 1.5))?;
+        let made = strokes(guard, ground, registers, (length, &MOVES.to_and_fro, 1.5))?;
         if made.swings {
             gain *= 0.4;
             continue;
@@ -162,19 +175,19 @@ fn suiting_strokes<L: Law>(
     let model = found.fit.model;
     let length = stroke_length(&model, ground);
     let (k, tau_s) = (model.gain_counts_per_s, model.tau_s);
-    let mut gain = SUITING / (k * (tau_s + 2.0 * law.tick_s()));
+    let mut gain = MOVES.suiting / (k * (tau_s + 2.0 * law.tick_s()));
     // Friction must be a little part of what a stroke asks for, and the drive must not be all that it gets.
-    let least = LEAST_PUSH_RATIO * model.coulomb_duty / length;
+    let least = MOVES.least_push_ratio * model.coulomb_duty / length;
     gain = gain.max(least).min(1.5 / length);
     // The first strokes were for a start.
     let first = stretches.split_off(stretches.len().saturating_sub(1));
     *stretches = first;
-    for d in [0.0, DAMPING / k] {
+    for d in [0.0, MOVES.damping / k] {
         let mut p = gain;
         for _ in 0..3 {
             let registers = hold(guard, law, of_duty(p, d))?;
             let longest_s = longest_s(&model, p);
-            let made = strokes(guard, ground, registers, (length, &BACK_AND_FORTH, longest_s))?;
+            let made = strokes(guard, ground, registers, (length, &MOVES.back_and_forth, longest_s))?;
             if !made.swings {
                 stretches.extend(made.stretches);
                 break;
@@ -194,14 +207,14 @@ fn stiff_strokes<L: Law>(
     stretches: &mut Vec<Stretch<L>>,
 ) -> Result<Found, Cause> {
     let task = task_of(request, &found);
-    let careful = Task { goal: Goal { ms: CAREFUL_MS, ..task.goal }, ..task };
+    let careful = Task { goal: Goal { ms: MOVES.careful_ms, ..task.goal }, ..task };
     let Some(design) = design_pd(&careful) else { return Ok(found) };
     let Some(position) = design.gains.position else { return Ok(found) };
     let (p, d) = (position.p / task.qpps, position.d / task.qpps);
     let registers = hold(guard, &task.law, of_duty(p, d))?;
     let length = stroke_length(&found.fit.model, ground);
     let longest_s = longest_s(&found.fit.model, p);
-    let made = strokes(guard, ground, registers, (length, &BACK_AND_FORTH, longest_s))?;
+    let made = strokes(guard, ground, registers, (length, &MOVES.back_and_forth, longest_s))?;
     if made.swings {
         return Ok(found);
     }
@@ -239,10 +252,10 @@ fn reach<L: Law>(stretch: &Stretch<L>) -> f64 {
 }
 
 fn believe(found: &Found, longest_move_counts: f64) -> Result<(), Cause> {
-    if found.fit.chi_square > WORST_CHI_SQUARE {
+    if found.fit.chi_square > MOVES.worst_chi_square {
         return Err(Cause::PoorFit);
     }
-    if found.fit.sd_ln_tau <= LOOSEST_TAU {
+    if found.fit.sd_ln_tau <= MOVES.loosest_tau {
         return Ok(());
     }
     // A motor that would have been moved farther, had the controller let it.
@@ -257,10 +270,10 @@ fn task_of<L: Law>(request: &Request<L>, found: &Found) -> Task<L> {
     let law = request.law.at_rate(found.rate_hz);
     let (lag_s, sd_s) = found.lag_s;
     let lag = Lag { filter_s: 0.0, delay_ticks: lag_s / law.tick_s() };
-    let worst_s = lag_s + LAG_DEVIATIONS * sd_s;
+    let worst_s = lag_s + MOVES.lag_deviations * sd_s;
     let mut goal = Goal::of_level(request.level);
-    if found.fit.chi_square > ODD_CHI_SQUARE {
-        goal.ms = 1.0 + ODD_SHARE * (goal.ms - 1.0);
+    if found.fit.chi_square > MOVES.odd_chi_square {
+        goal.ms = 1.0 + MOVES.odd_share * (goal.ms - 1.0);
     }
     Task {
         plant: model,
@@ -283,12 +296,12 @@ fn design_over_rates<L: Law>(
     found: &Found,
 ) -> Option<(Task<L>, crate::design::Design)> {
     let mut task = task;
-    for _ in 0..SOFTENINGS {
+    for _ in 0..MOVES.softenings {
         let design = design_for(method, &task)?;
         if keeps_margin(&task, &design.gains, found) {
             return Some((task, design));
         }
-        task.goal = Goal { ms: 1.0 + SOFTER * (task.goal.ms - 1.0), ..task.goal };
+        task.goal = Goal { ms: 1.0 + MOVES.softer * (task.goal.ms - 1.0), ..task.goal };
     }
     None
 }
@@ -301,7 +314,7 @@ fn keeps_margin<L: Law>(task: &Task<L>, gains: &Gains, found: &Found) -> bool {
         let lag = Lag { filter_s: 0.0, delay_ticks: found.lag_s.0 / law.tick_s() };
         let plant = LoopPlant::new(DiscretePlant::of(&task.plant, law.tick_s()), &law, lag);
         let gains = law.gains(&registers, task.qpps, true);
-        plant.margins(&gains, task.qpps).ms <= OTHER_RATE_MS * task.goal.ms
+        plant.margins(&gains, task.qpps).ms <= MOVES.other_rate_ms * task.goal.ms
             && plant.spectral_radius(&gains, task.qpps) < 1.0
     })
 }

@@ -27,7 +27,7 @@ use brushwork_tuning::duty_limiter::DutyLimit;
 use brushwork_tuning::law::{Ending, Facts, Law, Seen, Stamps};
 use brushwork_tuning::law_probe::LawProbe;
 use brushwork_tuning::model::{Gains, Lag};
-use brushwork_tuning::open_loop_record::{Actuation, STAMP_S};
+use brushwork_tuning::open_loop_record::{Actuation, OPEN_LOOP};
 use brushwork_tuning::setpoint::Setpoint;
 use position_law::SUM_BOUNDS_S;
 
@@ -208,7 +208,7 @@ impl Law for MotionMindLaw {
             slew_per_s: f64::INFINITY,
             offset_s: OFFSET_S,
             duty_limit: Some(duty_limit(amps_limit(max_current_raw))),
-            stamp_s: if is_undated { UNDATED_STAMP_S } else { STAMP_S },
+            stamp_s: if is_undated { UNDATED_STAMP_S } else { OPEN_LOOP.stamp_s },
         }
     }
 
