@@ -111,9 +111,8 @@ impl Rule {
 
     /// P over QPPS, the integral time and the derivative time, s, of a position loop that acts on the duty directly: `K / (s (tau s + 1))` with the dead
     /// time. `None` where the rule has no formula for such a process.
-    fn pid(self, seen: &Classic, has_integral: bool) -> Option<(f64, f64, f64)> {
+    fn pid(self, seen: &Classic, (ku, tu): (f64, f64), has_integral: bool) -> Option<(f64, f64, f64)> {
         let (k, t, d) = (seen.gain_counts_per_s, seen.tau_s, seen.dead_time_s);
-        let (ku, tu) = seen.position_ultimate(0.0);
         let half = 0.5 * t;
         Some(match (self, has_integral) {
             // Skogestad 2003, table 1: the derivative cancels the time constant.
@@ -262,7 +261,10 @@ fn gains_of<L: Law>(rule: Rule, report: &Report<L>, task: &Task<L>, seen: &Class
         Method::Pd => false,
         Method::Pid => true,
     };
-    let (gain, integral_s, derivative_s) = rule.pid(seen, has_integral)?;
+    let ultimate = report
+        .own_position_test
+        .map_or_else(|| seen.position_ultimate(0.0), |test| (test.ultimate_gain(), test.period_s));
+    let (gain, integral_s, derivative_s) = rule.pid(seen, ultimate, has_integral)?;
     let p = gain * task.qpps;
     Some(direct_gains(task, Pid { p, i: p / integral_s, d: p * derivative_s }))
 }
@@ -317,7 +319,7 @@ mod tests {
     fn each_rule_for_positions_gives_what_its_paper_says_for_a_known_motor() {
         let seen = Classic::of_model(10_000.0, 0.1, 0.01);
         let close = |rule: Rule, has_integral: bool, wanted: (f64, f64, f64)| {
-            let found = rule.pid(&seen, has_integral).expect("it has a formula");
+            let found = rule.pid(&seen, seen.position_ultimate(0.0), has_integral).expect("it has a formula");
             let pairs = [(found.0 * 10_000.0, wanted.0), (found.1, wanted.1), (found.2, wanted.2)];
             for (found, wanted) in pairs {
                 let is_close = found == wanted || (found / wanted - 1.0).abs() < 1e-3;
@@ -335,7 +337,7 @@ mod tests {
         for (rule, has_integral) in
             [(Rule::CohenCoon, true), (Rule::TyreusLuyben, false), (Rule::Amigo, false)]
         {
-            assert_eq!(rule.pid(&seen, has_integral), None, "{rule:?}");
+            assert_eq!(rule.pid(&seen, seen.position_ultimate(0.0), has_integral), None, "{rule:?}");
         }
     }
 }

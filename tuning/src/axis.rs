@@ -14,6 +14,15 @@ pub const VOLTS_PER_RAW: f64 = 0.1;
 pub const AMPS_PER_RAW: f64 = 0.01;
 /// Counts of an absolute encoder for one turn (MCP manual 2.4.9, command 16).
 pub const ABSOLUTE_COUNTS: i64 = 4096;
+/// The loop that a controller's own relay test is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum TestedLoop {
+    /// Its relay switches on the speed.
+    Velocity,
+    /// Its relay switches on the position.
+    Position,
+}
+
 /// When a request left and when its reply came.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Exchange {
@@ -130,12 +139,17 @@ pub trait Axis {
     fn raw_speed(&mut self) -> Result<i32, AxisError>;
     /// Sets the time-out after which the controller stops by itself, ms. Firmware without it refuses.
     fn set_stream_timeout(&mut self, milliseconds: u32) -> Result<(), AxisError>;
-    /// Has the controller's own relay test of its velocity loop begin: from now on it adds this duty, raw, to the one of now or takes it away, as the
-    /// speed is so many counts/s below or above the one of now. Gives the hysteresis that it takes, which may be none. It must not come twice.
-    fn start_own_test(&mut self, _height_raw: u32, _hysteresis: u32) -> Result<(Exchange, u32), AxisError> {
+    /// Has the controller's own relay test of a loop begin: from now on it adds this duty, raw, to the one of now or takes it away, as the speed or the position is
+    /// so many counts/s or counts below or above the one of now. Gives the hysteresis that it takes, which may be none. It must not come twice.
+    fn start_own_test(
+        &mut self,
+        _tested: TestedLoop,
+        _height_raw: u32,
+        _hysteresis: u32,
+    ) -> Result<(Exchange, u32), AxisError> {
         Err(AxisError::Refused("it has no test of its own".into()))
     }
-    /// What that test found: half of the oscillation of the speed, counts/s, and its period, µs. Both 0 where it has found nothing yet.
+    /// What that test found: half of the oscillation, counts/s or counts, and its period, µs. Both 0 where it has found nothing yet.
     fn read_own_test(&mut self) -> Result<[u32; 2], AxisError> {
         Err(AxisError::Refused("it has no test of its own".into()))
     }

@@ -182,7 +182,7 @@ causes! {
     LoopOff "The controller's loop was left switched off (DISABLEPID in FUNCTION, or MF, in RAM), since with this it could drive the motor \
         away. When the fault is remedied, arm or drive again: that switches the loop on where the motor stands.";
     /// A step or a relay was asked for where there is none.
-    OnlyFree "The controller's own test is for the velocity loop of a motor that may turn freely. Choose fit, step or relay.";
+    OnlyFree "The controller's own test is for the velocity loop of a motor that may turn freely, and for PD and PID of a position. Choose one of these, or fit, step or relay.";
     /// Its loop always has the motor.
     NoOpenLoop "This controller takes no duty, so that neither a step nor a relay can be made. Choose the method fit.";
     /// Between the starting duty and the highest there is no room.
@@ -201,6 +201,9 @@ causes! {
     OwnTestOnSimulated "The controller's own relay test (commands 84 to 89) is sent to simulated controllers only: no manual says how it drives the motor, how it ends \
         and in which unit its result is, and with wrong wiring it can lock the controller up (MCP manual 2.4.5). Choose the method relay, \
         which is this program's own and watches the motor.";
+    /// Nothing was counted any more in the controller's own test of a position.
+    CountsStopped "The counts stopped in the controller's own test. Either something holds the axis, or its encoder stopped counting: it turns too slowly in this \
+        test for its current to tell which.";
     /// The rule of the method has no gains for this loop.
     RuleUnstable "The rule of this method has no gains with which this loop would keep its margin. Choose the method fit.";
     /// The gains of a rule were lowered.

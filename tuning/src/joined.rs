@@ -3,7 +3,7 @@
 //! What is of a controller stands beside the same of the other one, which is left empty. Reports say the first kind's law of every
 //! controller, so that they can be read without knowing the second.
 
-use crate::axis::{Axis, AxisError, Exchange, Sample, Want};
+use crate::axis::{Axis, AxisError, Exchange, Sample, TestedLoop, Want};
 use crate::cause::Cause;
 use crate::duty_limiter::DutyLimit;
 use crate::experiment_guard::ExperimentGuard;
@@ -467,8 +467,13 @@ impl<L: Law, J: Law> Axis for Joined<'_, L, J> {
         self.axis.set_stream_timeout(milliseconds)
     }
 
-    fn start_own_test(&mut self, height_raw: u32, hysteresis: u32) -> Result<(Exchange, u32), AxisError> {
-        self.axis.start_own_test(height_raw, hysteresis)
+    fn start_own_test(
+        &mut self,
+        tested: TestedLoop,
+        height_raw: u32,
+        hysteresis: u32,
+    ) -> Result<(Exchange, u32), AxisError> {
+        self.axis.start_own_test(tested, height_raw, hysteresis)
     }
 
     fn read_own_test(&mut self) -> Result<[u32; 2], AxisError> {

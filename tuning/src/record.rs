@@ -3,7 +3,7 @@
 //! All values are whole numbers of the wire, so a record survives a file unchanged, and a tuner that is fed from it makes the
 //! same decisions and the same gains to the last bit.
 
-use crate::axis::{Axis, AxisError, Exchange, Sample, Want};
+use crate::axis::{Axis, AxisError, Exchange, Sample, TestedLoop, Want};
 use crate::law::Law;
 use crate::setup::{LoopAxis, Setup};
 use serde::{Deserialize, Serialize};
@@ -38,7 +38,7 @@ pub enum Entry<L: Law> {
     /// Travel given.
     Travel((i64, i64), Result<(), AxisError>),
     /// The controller's own relay test begun.
-    OwnTestStarted([u32; 2], Result<(Exchange, u32), AxisError>),
+    OwnTestStarted(TestedLoop, [u32; 2], Result<(Exchange, u32), AxisError>),
     /// What it found.
     OwnTest(Result<[u32; 2], AxisError>),
     /// Time that this computer took of the last calls; not noted where it took none.
@@ -134,9 +134,14 @@ impl<L: Law> Axis for Recorder<'_, L> {
         answer
     }
 
-    fn start_own_test(&mut self, height_raw: u32, hysteresis: u32) -> Result<(Exchange, u32), AxisError> {
-        let answer = self.axis.start_own_test(height_raw, hysteresis);
-        self.note(Entry::OwnTestStarted([height_raw, hysteresis], answer.clone()));
+    fn start_own_test(
+        &mut self,
+        tested: TestedLoop,
+        height_raw: u32,
+        hysteresis: u32,
+    ) -> Result<(Exchange, u32), AxisError> {
+        let answer = self.axis.start_own_test(tested, height_raw, hysteresis);
+        self.note(Entry::OwnTestStarted(tested, [height_raw, hysteresis], answer.clone()));
         answer
     }
 
@@ -292,9 +297,18 @@ impl<L: Law> Axis for Player<L> {
         }
     }
 
-    fn start_own_test(&mut self, height_raw: u32, hysteresis: u32) -> Result<(Exchange, u32), AxisError> {
+    fn start_own_test(
+        &mut self,
+        tested: TestedLoop,
+        height_raw: u32,
+        hysteresis: u32,
+    ) -> Result<(Exchange, u32), AxisError> {
         match self.next() {
-            Some(Entry::OwnTestStarted(was, answer)) if was == [height_raw, hysteresis] => answer,
+            Some(Entry::OwnTestStarted(of, was, answer))
+                if of == tested && was == [height_raw, hysteresis] =>
+            {
+                answer
+            }
             _ => self.stray(),
         }
     }

@@ -3,7 +3,7 @@
 use crate::cause::Cause;
 use crate::design::{Design, Task};
 use crate::experiment::{
-    Backlash, FreeRun, OwnTestRun, PositionRelayRun, Probe, RelayRun, StepRun, WindowRun,
+    Backlash, FreeRun, OwnPositionTestRun, OwnTestRun, PositionRelayRun, Probe, RelayRun, StepRun, WindowRun,
 };
 use crate::fit::Fit;
 use crate::lag::LagFit;
@@ -83,6 +83,9 @@ pub struct Report<L: Law> {
     /// The controller's own relay test.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub own_test: Option<OwnTestRun>,
+    /// The same of its position loop.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub own_position_test: Option<OwnPositionTestRun>,
     /// What the textbook experiments see in the same record.
     pub classic: Option<Classic>,
     /// The open-loop fit.

@@ -6,8 +6,8 @@ use crate::backlash::with_backlash;
 use crate::cause::Cause;
 use crate::design::{Goal, Task, USUAL_OVERSHOOT, design_velocity};
 use crate::experiment::{
-    Probe, go_to, rest, run_free, run_own_test, run_position_relay, run_probe, run_relay, run_step,
-    run_window,
+    Probe, go_to, rest, run_free, run_own_position_test, run_own_test, run_position_relay, run_probe,
+    run_relay, run_step, run_window,
 };
 use crate::experiment_guard::{ExperimentGuard, GuardOptions};
 use crate::fit::{Fit, fit};
@@ -138,6 +138,7 @@ fn blank<L: Law>(request: &Request<L>) -> Report<L> {
         relay: None,
         position_relay: None,
         own_test: None,
+        own_position_test: None,
         classic: None,
         fit: None,
         qpps: None,
@@ -173,8 +174,12 @@ fn run<L: LawProbe>(
     if request.method == Method::Velocity && guard.setup.encoder == EncoderClass::AbsoluteWrapping {
         return Err(Cause::WrappingEncoder);
     }
-    let is_free = request.method == Method::Velocity && request.excitation == Excitation::Free;
-    if request.identification == Identification::Controller && !is_free {
+    let is_tested = match request.method {
+        Method::Velocity => request.excitation == Excitation::Free,
+        Method::Pd | Method::Pid => true,
+        Method::Piv => false,
+    };
+    if request.identification == Identification::Controller && !is_tested {
         return Err(Cause::OnlyFree);
     }
     let mark = |report: &mut Report<L>, cause| report.causes.push(cause);
@@ -214,14 +219,13 @@ fn identify<L: Law>(
         Excitation::Window(width) => {
             let width = usable_width(guard, &probe, width)?;
             match request.identification {
-                Identification::Fit => identify_window(guard, &probe, (width, None), report)?,
+                Identification::Fit | Identification::Controller => {
+                    identify_window(guard, &probe, (width, None), report)?
+                }
                 Identification::Step => {
                     identify_window(guard, &probe, (width, Some(request.about_duty)), report)?
                 }
-                // The controller's own test was refused before.
-                Identification::Relay | Identification::Controller => {
-                    identify_about(guard, &probe, Some(width), report)?
-                }
+                Identification::Relay => identify_about(guard, &probe, Some(width), report)?,
             }
         }
     };
@@ -242,7 +246,14 @@ fn identify<L: Law>(
     }
     if request.identification == Identification::Controller {
         guard.progress("The controller tests its loop itself");
-        report.own_test = Some(run_own_test(guard, &probe, request.about_duty)?);
+        if request.method == Method::Velocity {
+            report.own_test = Some(run_own_test(guard, &probe, request.about_duty)?);
+        } else {
+            if let Excitation::Window(width) = request.excitation {
+                usable_width(guard, &probe, width)?;
+            }
+            report.own_position_test = Some(run_own_position_test(guard, &probe)?);
+        }
     }
     Ok((probe, found))
 }

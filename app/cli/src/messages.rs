@@ -209,7 +209,7 @@ messages! {
         BegunAgain "This computer answered late: the program did not renew the motion within 250 ms, and the motors were stopped. The run begins again.",
         Internal { word: String } "Internal error while tuning: {word}. The motors were stopped.",
         NotTuned { why: String } "The motor was not tuned: {why}.",
-        NotForPositions "The controller's own test is for the velocity loop. A position loop is tuned with --method pd, pid or piv, identified by --identify fit, step or relay.",
+        NotForPiv "The controller's own test gives gains of a PD or PID loop, not of PIV: give --method pd or --method pid with --identify controller.",
         TwoIdentifications "A motor is identified by a step or by a relay, not by both: --method and --identify name one each. Give --method pd, pid or piv with --identify.",
         NoTravel "A position loop is not tuned without saying how far the axis may go: give --travel LOW..HIGH in counts, or --turns-freely where it has no end stops and may be driven at full duty both ways. The whole range of an absolute encoder is --encoder absolute.",
         NotPutBack "What the tuning changed could not be put back: `brushwork settings unfinished` tells what is left.",

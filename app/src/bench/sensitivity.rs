@@ -13,8 +13,11 @@ use std::process::Command;
 /// What each threshold is multiplied by.
 const FACTORS: [f64; 2] = [0.8, 1.25];
 
+/// Differences below this are not printed.
+const LEAST: f64 = 0.005;
+
 /// Parts of a bench's JSON that are compared: a column, its name in the JSON, and its name in print.
-const COLUMNS: [(&str, &str); 11] = [
+const COLUMNS: [(&str, &str); 13] = [
     ("found", "found"),
     ("accept", "accepted"),
     ("accepted", "accepted"),
@@ -25,7 +28,9 @@ const COLUMNS: [(&str, &str); 11] = [
     ("beyond", "Ms > 2"),
     ("off_in_time", "off in time"),
     ("named", "named"),
-    ("seconds_median", "s"),
+    ("off_median_s", "off after, s"),
+    ("off_max_s", "at the latest, s"),
+    ("seconds_median", "run, s"),
 ];
 
 /// Runs it for every threshold of the stages that were asked for.
@@ -95,10 +100,10 @@ fn differences(usual: &Value, moved: &Value) -> String {
     }
     let different = COLUMNS.iter().filter_map(|(column, name)| {
         let by = mean(moved, column)? - mean(usual, column)?;
-        (by.abs() >= 0.05).then(|| format!("{name} {by:+.1}"))
+        (by.abs() >= LEAST).then(|| format!("{name} {by:+.2}"))
     });
     let different: Vec<String> = different.collect();
-    if different.is_empty() { "less than 0.05 of each".to_owned() } else { different.join(", ") }
+    if different.is_empty() { "less than 0.005 of each".to_owned() } else { different.join(", ") }
 }
 
 /// The mean of a column over our own rows.

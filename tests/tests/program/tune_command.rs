@@ -296,12 +296,26 @@ fn the_controllers_own_test_is_for_simulated_ones_alone() {
     assert_eq!(bench.report().causes, [Cause::OwnTestOnSimulated]);
     assert!(bench.report().probe.is_none(), "nothing was moved");
     assert_eq!(bench.held(), before, "{ending:?}");
-    let words = ["tune", "velocity", "-c", "sim:mcp266", "--method", "controller"];
-    let ending = Program::start(BRUSHWORK, &words).finish(LIMIT);
-    let printed = ending.stdout.join("\n");
-    if code(&ending) != Some(REFUSED) {
-        for words in ["controller's own test", "its period", "Tyreus-Luyben (of this method)"] {
-            assert!(printed.contains(words), "{words}: {ending:?}");
+    for arguments in [
+        &["tune", "velocity", "-c", "sim:mcp266", "--method", "controller"][..],
+        &[
+            "tune",
+            "position",
+            "-c",
+            "sim:mcp266",
+            "--turns-freely",
+            "--method",
+            "pid",
+            "--identify",
+            "controller",
+        ],
+    ] {
+        let ending = Program::start(BRUSHWORK, arguments).finish(LIMIT);
+        let printed = ending.stdout.join("\n");
+        if code(&ending) != Some(REFUSED) {
+            for words in ["controller's own test", "its period", "Tyreus-Luyben (of this method)"] {
+                assert!(printed.contains(words), "{words}: {ending:?}");
+            }
         }
     }
 }
@@ -346,11 +360,15 @@ fn what_load_the_loop_stands_is_in_the_figures_for_programs_too() {
 }
 
 #[test]
-fn a_position_is_not_tuned_without_saying_how_far_the_axis_may_go_nor_by_the_controllers_own_test() {
+fn a_position_is_not_tuned_without_saying_how_far_the_axis_may_go_nor_as_piv_by_the_controllers_own_test() {
     for (arguments, words) in [
         (&["tune", "position", "-c", "sim:mcp266"][..], "--turns-freely"),
         (&["tune", "position", "--method", "step", "-c", "sim:mcp266"], "--turns-freely"),
-        (&["tune", "position", "--method", "controller", "-c", "sim:mcp266"], "velocity loop"),
+        (&["tune", "position", "--method", "controller", "-c", "sim:mcp266"], "not of PIV"),
+        (
+            &["tune", "position", "--method", "piv", "--identify", "controller", "-c", "sim:mcp266"],
+            "not of PIV",
+        ),
         (
             &[
                 "tune",

@@ -14,7 +14,7 @@ pub(crate) mod window;
 pub use backlash::{Backlash, measure_backlash};
 pub use free::{FreeRun, run_free};
 pub use limit_cycle::Figure;
-pub use own_test::{OwnTestRun, run_own_test};
+pub use own_test::{OwnPositionTestRun, OwnTestRun, run_own_position_test, run_own_test};
 pub use position_relay::{PositionRelayRun, run_position_relay};
 pub use probe::{Probe, run_probe};
 pub use relay::{RelayRun, run_relay};

@@ -133,7 +133,7 @@ fn oscillate<L: Law>(
 }
 
 /// Where the axis stands, and the noise of its count there.
-fn at_rest<L: Law>(guard: &mut ExperimentGuard<'_, L>) -> Result<(f64, f64), Cause> {
+pub(super) fn at_rest<L: Law>(guard: &mut ExperimentGuard<'_, L>) -> Result<(f64, f64), Cause> {
     let mut counts = Vec::new();
     while counts.len() < POSITION_RELAY.noise_polls {
         counts.extend(guard.poll(false)?.map(|point| point.counts));

@@ -1,7 +1,7 @@
 //! What the axis is commanded, and the registers that are written.
 
 use super::{ExperimentGuard, cause_of, retried};
-use crate::axis::{AxisError, FULL_DUTY_RAW, Want};
+use crate::axis::{AxisError, FULL_DUTY_RAW, TestedLoop, Want};
 use crate::cause::Cause;
 use crate::gains::Gains;
 use crate::law::Law;
@@ -78,18 +78,19 @@ impl<L: Law> ExperimentGuard<'_, L> {
         Ok(())
     }
 
-    /// Has the controller's own relay test begin about the speed and the duty of now, and gives its hysteresis; `None` where nothing says whether it has
-    /// begun. It is not tried again by itself: it would begin about the duty that it has just given.
+    /// Has the controller's own relay test of a loop begin about the speed or the position and the duty of now, and gives its hysteresis, counts/s or counts; `None`
+    /// where nothing says whether it has begun. It is not tried again by itself: it would begin about the duty that it has just given.
     pub fn start_own_test(
         &mut self,
+        tested: TestedLoop,
         height: f64,
         hysteresis: f64,
-        set_speed: f64,
+        about: Input,
     ) -> Result<Option<f64>, Cause> {
         let raw = (height * f64::from(FULL_DUTY_RAW)).round() as u32;
-        self.pause_for(Input::Speed(set_speed));
+        self.pause_for(about);
         let first_s = self.now_s();
-        let answer = self.axis.start_own_test(raw, hysteresis.round() as u32);
+        let answer = self.axis.start_own_test(tested, raw, hysteresis.round() as u32);
         self.note_stolen();
         let (exchange, taken) = match answer {
             Ok(answer) => answer,
@@ -99,14 +100,14 @@ impl<L: Law> ExperimentGuard<'_, L> {
         };
         self.pace.answered(&exchange);
         let t = exchange.middle_s() - self.epoch_s;
-        self.drives.push(Drive { t, input: Input::Speed(set_speed) });
+        self.drives.push(Drive { t, input: about });
         self.monitor.release(first_s, t);
         // Between two polls its relay may have given either duty.
         self.monitor.hold(4.0 * height);
         Ok(Some(f64::from(taken)))
     }
 
-    /// What that test found, amplitude in counts/s and period in s; `None` where it has found nothing yet, or did not answer.
+    /// What that test found, amplitude in counts/s or counts and period in s; `None` where it has found nothing yet, or did not answer.
     pub fn own_test(&mut self) -> Result<Option<(f64, f64)>, Cause> {
         match self.axis.read_own_test() {
             Ok([0, _] | [_, 0]) | Err(AxisError::NoReply | AxisError::Late) => Ok(None),

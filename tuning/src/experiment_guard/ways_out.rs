@@ -73,6 +73,11 @@ impl<L: Law> ExperimentGuard<'_, L> {
         self.poll_for(WAYS_OUT.resting_s, false)
     }
 
+    /// The motor left where a loop was to hold it: takes the duty away and names why.
+    pub(crate) fn strayed(&mut self) -> Cause {
+        self.name_fault(Cause::EncoderFlipped)
+    }
+
     /// Takes the duty away and watches what the motor does then, which distinguishes the faults. `guess` stands where nothing more
     /// is heard.
     pub(super) fn name_fault(&mut self, guess: Cause) -> Cause {

@@ -118,6 +118,9 @@ pub enum PositionIdentificationArg {
     Step,
     /// A relay about where the axis stands; gains by Tyreus-Luyben, of a PD loop by Ziegler-Nichols.
     Relay,
+    /// The controller's own relay test about where the axis stands, beside a fitted model, for pd and pid; gains as by a relay. Simulated MCPs and RoboClaws
+    /// only: how a real one does it is not public.
+    Controller,
 }
 
 /// A run on a machine.
@@ -191,7 +194,8 @@ pub enum MethodArg {
     Step,
     /// The same loop, by a relay.
     Relay,
-    /// Not for positions.
+    /// Asked for by `--method pd` or `pid` with `--identify controller`.
+    #[value(hide = true)]
     Controller,
 }
 

@@ -52,15 +52,25 @@ pub fn run(args: &TuneArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
                 MethodArg::Pd => Method::Pd,
                 MethodArg::Pid => Method::Pid,
                 MethodArg::Piv | MethodArg::Fit | MethodArg::Step | MethodArg::Relay => Method::Piv,
-                MethodArg::Controller => return Exit::Usage.saying(CliTuneMessage::NotForPositions),
+                MethodArg::Controller => return Exit::Usage.saying(CliTuneMessage::NotForPiv),
             };
             let identification = match (args.method, args.identify) {
-                (MethodArg::Step, PositionIdentificationArg::Relay)
-                | (MethodArg::Relay, PositionIdentificationArg::Step) => {
+                (MethodArg::Piv | MethodArg::Fit, PositionIdentificationArg::Controller) => {
+                    return Exit::Usage.saying(CliTuneMessage::NotForPiv);
+                }
+                (
+                    MethodArg::Step,
+                    PositionIdentificationArg::Relay | PositionIdentificationArg::Controller,
+                )
+                | (
+                    MethodArg::Relay,
+                    PositionIdentificationArg::Step | PositionIdentificationArg::Controller,
+                ) => {
                     return Exit::Usage.saying(CliTuneMessage::TwoIdentifications);
                 }
                 (MethodArg::Step, _) | (_, PositionIdentificationArg::Step) => Identification::Step,
                 (MethodArg::Relay, _) | (_, PositionIdentificationArg::Relay) => Identification::Relay,
+                (_, PositionIdentificationArg::Controller) => Identification::Controller,
                 _ => Identification::Fit,
             };
             let has_range = args.run.encoder.is_some_and(|encoder| encoder != EncoderArg::Quadrature);

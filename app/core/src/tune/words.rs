@@ -58,6 +58,13 @@ pub fn experiments(report: &Report) -> Vec<Row> {
         rows.push(row("its oscillation", format!("{:.0} counts/s", test.amplitude), hysteresis));
         rows.push(row("its period", format!("{:.1} ms", 1e3 * test.period_s), String::new()));
     }
+    if let Some(test) = &report.own_position_test {
+        let about = format!("about {:.0} counts from the start", test.set_counts);
+        rows.push(row("controller's own test", duties(test.duties), about));
+        let hysteresis = format!("hysteresis {:.0} counts", test.hysteresis_counts);
+        rows.push(row("its oscillation", format!("{:.0} counts", test.amplitude_counts), hysteresis));
+        rows.push(row("its period", format!("{:.1} ms", 1e3 * test.period_s), String::new()));
+    }
     rows
 }
 

@@ -15,6 +15,11 @@ const OTHER_METHOD: [&str; 2] = [
     "Or try about another duty, and allow more of it.",
 ];
 
+/// What to do where nothing is counted, or the axis is held.
+const LOOK_AT_ENCODER: &str =
+    "Look at the encoder's plug, and turn the shaft by hand: the encoder figure at the top must change.";
+const FREE_THE_AXIS: &str = "Take brakes and jams away, and move the axis off its end stop.";
+
 /// What to do where answers came late.
 fn against_lateness(whose: Whose) -> &'static [&'static str] {
     match whose {
@@ -40,11 +45,10 @@ fn steps(cause: Cause) -> &'static [&'static str] {
             "Look at both motor leads and their screws, and take brakes and jams away.",
             "This controller reports no motor current, so the three cannot be told apart from here.",
         ],
-        Cause::CurrentUnclear => &[
-            "Look at both motor leads and their screws.",
-            "Look at the encoder's plug, and turn the shaft by hand: the encoder figure at the top must change.",
-            "Take brakes and jams away, and move the axis off its end stop.",
-        ],
+        Cause::CountsStopped => &[LOOK_AT_ENCODER, FREE_THE_AXIS],
+        Cause::CurrentUnclear => {
+            &["Look at both motor leads and their screws.", LOOK_AT_ENCODER, FREE_THE_AXIS]
+        }
         Cause::AnsweredLate { whose, .. } | Cause::TakenLate { whose, .. } => against_lateness(whose),
         Cause::OnlyFree
         | Cause::NoOpenLoop

@@ -150,7 +150,11 @@ fn options_ui(ui: &mut Ui, model: &mut Model, which: Loop) {
         let no_own_test = family
             .lacks(Ability::OwnTest)
             .or_else(|| (!is_simulated).then_some(NOT_ON_REAL_ONES))
-            .or_else(|| (which == Loop::Position || !setting.turns_freely).then_some(NOT_FOR_POSITIONS));
+            .or_else(|| match setting.method {
+                Method::Velocity => (!setting.turns_freely).then_some(ONLY_FREELY),
+                Method::Piv => Some(NOT_FOR_PIV),
+                Method::Pd | Method::Pid => None,
+            });
         ui.horizontal(|ui| identification_ui(ui, setting, no_own_test));
     }
     let is_said = lacked_travel && !setting.lacks_travel();
@@ -165,8 +169,17 @@ const NOT_ON_REAL_ONES: &str = "Simulated controllers only: no manual says how a
 const RELAY_ABOUT_SPEED: &str = "Astrom and Hagglund's relay about the speed of a duty, until the motor goes round in a limit cycle; gains by the rule of Tyreus and Luyben";
 const RELAY_ABOUT_PLACE: &str = "Astrom and Hagglund's relay about where the axis stands, until it goes to and fro in a limit cycle; gains by the rule of Tyreus and Luyben, of a \
                                  PD loop by that of Ziegler and Nichols";
-/// The same in a position loop, and in a travel.
-const NOT_FOR_POSITIONS: &str = "The controller's own test turns the motor at a speed: it is for the velocity loop of a motor that may turn freely.";
+/// The same of a speed in a travel, and of PIV.
+const ONLY_FREELY: &str =
+    "The controller's own test of a speed turns the motor on and on: it is for a motor that may turn freely.";
+const NOT_FOR_PIV: &str =
+    "The controller's own test of a position gives gains of a PD or PID loop. Choose one of these.";
+
+/// What the controller's own test of a speed does, and that of a position.
+const OWN_ABOUT_SPEED: &str = "The controller's own relay test (commands 84, 85, 88 and 89) about the speed of a duty, beside a fitted model; gains by the rule of Tyreus and Luyben. How \
+                               a real one does it is not public: the simulated one does what a textbook's relay does";
+const OWN_ABOUT_PLACE: &str = "The controller's own relay test (commands 86 to 89) about where the axis stands, beside a fitted model; gains by the rule of Tyreus and Luyben, of a PD loop \
+                               by that of Ziegler and Nichols. How a real one does it is not public: the simulated one does what a textbook's relay does";
 
 /// How the motor is identified; `no_own_test` says why the controller's own test is not to be had, if so.
 fn identification_ui(ui: &mut Ui, setting: &mut Setting, no_own_test: Option<&str>) {
@@ -193,16 +206,14 @@ fn identification_ui(ui: &mut Ui, setting: &mut Setting, no_own_test: Option<&st
     }
     ui.add_enabled_ui(no_own_test.is_none(), |ui| {
         ui.radio_value(&mut setting.identification, Identification::Controller, "By controller")
-            .on_hover_text(
-                "The controller's own relay test (commands 84 to 89) about the speed of a duty, beside a fitted model; gains by the rule of Tyreus and Luyben. How a real \
-                 one does it is not public: the simulated one does what a textbook's relay does",
-            )
+            .on_hover_text(if setting.method == Method::Velocity { OWN_ABOUT_SPEED } else { OWN_ABOUT_PLACE })
             .on_disabled_hover_text(no_own_test.unwrap_or_default());
     });
     let has_duty_about = match setting.identification {
         Identification::Fit => false,
         Identification::Relay => !is_about_place,
-        Identification::Step | Identification::Controller => true,
+        Identification::Step => true,
+        Identification::Controller => setting.method == Method::Velocity,
     };
     if has_duty_about {
         ui.label("about");

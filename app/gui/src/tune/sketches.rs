@@ -84,6 +84,12 @@ impl Sketch {
                 caption: "The encoder is open, a motor lead is open, or the shaft is held",
                 ..sound
             },
+            Cause::CountsStopped => Self {
+                signals: Wires::Cut,
+                shaft: Shaft::Blocked,
+                caption: "The encoder is open, or the shaft is held",
+                ..sound
+            },
             Cause::EncoderDead | Cause::EncoderLost => Self {
                 signals: Wires::Cut,
                 caption: "The encoder's plug, its supply or its cable is open",

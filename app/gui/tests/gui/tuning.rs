@@ -109,10 +109,12 @@ fn the_other_methods_are_picked_and_the_rules_on_their_model_are_considered_besi
 }
 
 #[test]
-fn a_position_is_tuned_by_step_and_by_relay_freely_and_in_a_travel() {
-    for (label, identification, method) in
-        [("By step", Identification::Step, "PD"), ("By relay", Identification::Relay, "PIV")]
-    {
+fn a_position_is_tuned_by_step_relay_and_the_controllers_own_test_freely_and_in_a_travel() {
+    for (label, identification, method) in [
+        ("By step", Identification::Step, "PD"),
+        ("By relay", Identification::Relay, "PIV"),
+        ("By controller", Identification::Controller, "PID"),
+    ] {
         for is_inside in [false, true] {
             let mut bench = opened("small-gearmotor", "Position Settings");
             let start = bench.truth().axes[0].encoder_counts;
@@ -133,6 +135,7 @@ fn a_position_is_tuned_by_step_and_by_relay_freely_and_in_a_travel() {
             assert_ne!(tuned.report.verdict, Verdict::Refused, "{case}: {:?}", tuned.report.causes);
             assert_eq!(tuned.report.request.identification, identification, "{case}");
             assert_eq!(tuned.report.position_relay.is_some(), label == "By relay", "{case}");
+            assert_eq!(tuned.report.own_position_test.is_some(), label == "By controller", "{case}");
             assert!(tuned.rules.len() > 2, "{case}: the rules stand beside it");
             let proposed = proposed(&mut bench, Loop::Position);
             bench.press("Apply (RAM)");

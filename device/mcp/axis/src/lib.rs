@@ -21,7 +21,7 @@ pub use registers::{
 use brushwork_mcp_wire::packet_serial::name::*;
 use brushwork_mcp_wire::packet_serial::status::{Condition, decode};
 use brushwork_mcp_wire::packet_serial::{Generation, Given, Read, Typed, commands, give, scale};
-use brushwork_tuning::axis::{Axis, AxisError, EncoderClass, Exchange, Sample, Status, Want};
+use brushwork_tuning::axis::{Axis, AxisError, EncoderClass, Exchange, Sample, Status, TestedLoop, Want};
 use brushwork_tuning::setup::{LoopAxis, Setup};
 use brushwork_values::Motor;
 use std::collections::BTreeSet;
@@ -263,12 +263,20 @@ impl<C: Carrier> Axis for PacketAxis<C> {
         self.carrier.transact(commands::SET_STREAM, &values).map(|_| ())
     }
 
-    /// Commands 84 and 85. Which unit the period has, how the test ends and what it does where the wiring is wrong is not public: real controllers are not sent it.
-    fn start_own_test(&mut self, height_raw: u32, hysteresis: u32) -> Result<(Exchange, u32), AxisError> {
+    /// Commands 84 to 87. Which unit the period has, how the test ends and what it does where the wiring is wrong is not public: real controllers are not sent it.
+    fn start_own_test(
+        &mut self,
+        tested: TestedLoop,
+        height_raw: u32,
+        hysteresis: u32,
+    ) -> Result<(Exchange, u32), AxisError> {
         if !self.carrier.is_simulated() {
             return Err(AxisError::OnlySimulated);
         }
-        let command = [commands::AUTOTUNE_VELOCITY_M1, commands::AUTOTUNE_VELOCITY_M2];
+        let command = match tested {
+            TestedLoop::Velocity => [commands::AUTOTUNE_VELOCITY_M1, commands::AUTOTUNE_VELOCITY_M2],
+            TestedLoop::Position => [commands::AUTOTUNE_POSITION_M1, commands::AUTOTUNE_POSITION_M2],
+        };
         let has_hysteresis = self.carrier.generation() >= Generation::Gen3;
         let taken = if has_hysteresis { hysteresis } else { 0 };
         let values = [give(AMPLITUDE, i64::from(height_raw)), give(HYSTERESIS, i64::from(taken))];

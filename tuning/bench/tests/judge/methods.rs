@@ -123,7 +123,7 @@ fn neither_gives_more_duty_than_its_step() {
 }
 
 #[test]
-fn the_controllers_own_test_is_refused_in_a_travel_and_for_a_position() {
+fn the_controllers_own_test_is_refused_in_a_travel_and_for_piv() {
     let plant = specimen(31, 0);
     let identification = Identification::Controller;
     let inside = Excitation::Window(2_000.0);
