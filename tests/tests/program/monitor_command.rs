@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use brushwork_link::transport::{SerialTransport, Transport as _};
 use brushwork_mcp_wire::packet_serial::Generation;
 use brushwork_tests::program::{Child, Ending, Program};
-use brushwork_tests::simulated::{OnPty, is_driven};
+use brushwork_tests::simulated::{LATE_PTY, OnPty, is_driven};
 use brushwork_tests::wait::{self, LIMIT};
 use serde_json::Value;
 
@@ -101,7 +101,7 @@ fn a_tap_passes_another_programs_bytes_and_tells_them_while_clients_come_and_go(
 fn told_of_two_clients() -> Vec<Value> {
     let tapped = Tapped::start(Generation::Gen3, &["--json"]);
     for _ in 0..2 {
-        let ending = run(&["status", "--connect", &tapped.tap(), "--json"]);
+        let ending = run(&["status", "--connect", &format!("{}{LATE_PTY}", tapped.tap()), "--json"]);
         assert_eq!(code(&ending), Some(0), "{ending:?}");
         let status: Value = serde_json::from_str(&ending.stdout.join("\n")).expect("JSON");
         assert_eq!(status["identity"]["generation"], 3, "{status}");
@@ -156,7 +156,7 @@ fn round_trip(port: &mut SerialTransport) -> Duration {
 fn stops_what_the_client_drove(signal: &str) {
     let stopped = (0..TRIES).any(|_| {
         let tapped = Tapped::start(Generation::Gen1, &[]);
-        let target = format!("{},stream=usb", tapped.tap());
+        let target = format!("{},stream=usb{LATE_PTY}", tapped.tap());
         let client =
             start(&["drive", "--connect", &target, "--motor", "both", "--duty", "40", "--for", "600"]);
         tapped.controller.wait_until("a client that drives", is_driven);
@@ -166,13 +166,19 @@ fn stops_what_the_client_drove(signal: &str) {
         off.assert_by_command();
         let ending = tapped.monitor.finish(LIMIT);
         assert_eq!(code(&ending), Some(130), "{ending:?}");
-        assert!(ending.stderr.join(" ").contains("Stopped both motors of 0x80"), "{ending:?}");
+        let said = ending.stderr.join(" ");
+        // The motors are off, but a busy machine may bring the confirmation too late.
+        let is_confirmed = said.contains("Stopped both motors of 0x80");
+        assert!(
+            is_confirmed || said.contains("Told both motors of 0x80 to stop, but it did not"),
+            "{ending:?}"
+        );
         let client = client.finish(LIMIT);
-        let was_starved = client.was_starved();
-        assert!(was_starved || code(&client) == Some(3), "the client has lost its link: {client:?}");
-        !was_starved
+        let was_late = client.was_starved() || client.found_silence();
+        assert!(was_late || code(&client) == Some(3), "the client has lost its link: {client:?}");
+        is_confirmed && !was_late
     });
-    assert!(stopped, "the client has the processor now and then");
+    assert!(stopped, "the machine has a processor for the client and the confirmation now and then");
 }
 
 #[test]

@@ -365,9 +365,14 @@ fn robo_server_binary(port: &mut Port) {
     port.write_slowly(&summed(vec![0x1D, 1]), Duration::ZERO);
     let silence = port.line.read(&mut [0; 8], ms(60)).expect("the line is open");
     assert_eq!(silence, 0, "a frame of the wrong length is met with silence");
-    port.sleep(ms(20));
-    port.write(&summed(vec![0x1D, 1, 8]));
-    assert_eq!(port.read(3, ms(100)), [0x01, 11, 12]);
+    // On a real line, which may be late, the two can come as one, which is no command either: then it is sent again.
+    let sent = if port.virtual_line.is_some() { 1 } else { 10 };
+    let mut replies = (0..sent).map(|_| {
+        port.sleep(ms(20));
+        port.write(&summed(vec![0x1D, 1, 8]));
+        port.read(3, ms(100))
+    });
+    assert_eq!(replies.find(|reply| !reply.is_empty()).unwrap_or_default(), [0x01, 11, 12]);
 }
 
 /// RoboServerA in lines: three writes a command, zeros in front of the numbers, the value from the sixth character on.
