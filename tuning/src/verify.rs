@@ -195,13 +195,16 @@ pub fn check_moves<L: Law>(
     report: &mut Report<L>,
 ) -> Result<(), Cause> {
     let found = leave_room(guard, request, task, report)?;
-    let is_unexplained = report.lag.is_some_and(|lag| lag.is_unexplained());
+    // A loop on the position whose gains were raised and stayed quiet has shown what the model leaves unexplained: backlash, which it passes at each turn in a travel. A
+    // velocity loop has not: of 400 in a travel one that stayed quiet had a true maximum sensitivity of 1.83.
+    let is_heard = request.method != Method::Velocity && found.is_some_and(|(_, is_doubtful)| !is_doubtful);
+    let is_unexplained = !is_heard && report.lag.is_some_and(|lag| lag.is_unexplained());
     let is_doubtful = is_unexplained || found.is_some_and(|(_, is_doubtful)| is_doubtful);
     try_until_smooth(guard, request, task, report, found.map(|(room, _)| room))?;
     let is_short = |design: Design| {
         may_be_short(task, &design.gains, is_doubtful)
             || is_unexplained && unexplained_ms(design.ms) > MARGIN.most_ms
-            || report.lag.is_some_and(|lag| lag.chi_square > VERIFY.no_model)
+            || !is_heard && report.lag.is_some_and(|lag| lag.chi_square > VERIFY.no_model)
     };
     // Where gains can be raised and were not, since a travel had no room for it or a load moves the axis, nothing has shown their margin.
     let is_unheard = found.is_none() && request.excitation != Excitation::Free && guard.facts.has_duty;
