@@ -6,7 +6,7 @@
 
 use super::Probe;
 use super::free::settle_at;
-use super::position_relay::at_rest;
+use super::position_relay::{POSITION_RELAY, at_rest};
 use super::step::about;
 use crate::axis::TestedLoop;
 use crate::cause::Cause;
@@ -29,10 +29,6 @@ thresholds! {
         look_s: f64 = 0.1,
         /// How long the result may take, in seconds.
         longest_s: f64 = 15.0,
-        /// Height of the relay about a position above the duty that the motor starts at, as a share of full: that of this program's own.
-        above_start: f64 = 0.22,
-        /// Hysteresis about a position, in standard deviations of the count at rest, as of this program's own relay.
-        hysteresis: f64 = 3.0,
         /// Least hysteresis about a position, in counts: an encoder may stand between two counts.
         least_hysteresis_counts: f64 = 2.0,
         /// How far the axis may go from where a test of a position began, as the way of so many seconds at full speed, and so many hystereses more. With 4 ms eight of 64 runs of
@@ -134,13 +130,14 @@ pub fn run_own_position_test<L: Law>(
     guard: &mut ExperimentGuard<'_, L>,
     probe: &Probe,
 ) -> Result<OwnPositionTestRun, Cause> {
-    let height = (probe.start_duty + OWN_TEST.above_start).min(guard.options.max_duty);
+    // As high as the relay of this program, and as deaf to the noise of the count.
+    let height = (probe.start_duty + POSITION_RELAY.above_start).min(guard.options.max_duty);
     guard.come_to_rest()?;
     let mut begun = None;
     for _ in 0..OWN_TEST.tries {
         let (set_counts, noise_counts) = at_rest(guard)?;
         // An encoder that flickers by a count, and one whose count is all that moves, must not switch it.
-        let wanted = (OWN_TEST.hysteresis * noise_counts).ceil().max(OWN_TEST.least_hysteresis_counts);
+        let wanted = (POSITION_RELAY.hysteresis * noise_counts).ceil().max(OWN_TEST.least_hysteresis_counts);
         let about = Input::Position(set_counts, guard.monitor.full_speed);
         let taken = guard.start_own_test(TestedLoop::Position, height, wanted, about)?;
         begun = taken.map(|hysteresis_counts| (set_counts, hysteresis_counts));

@@ -15,7 +15,7 @@ use std::f64::consts::TAU;
 
 thresholds! {
     /// The relay about a position: its duties, hysteresis, bias and time.
-    POSITION_RELAY: Thresholds {
+    pub(crate) POSITION_RELAY: Thresholds {
         /// Half the height of the relay above the duty that the motor starts at, as a share of full.
         above_start: f64 = 0.22,
         /// Factor of that in a travel where the cycle came too near to an end.
