@@ -83,3 +83,16 @@ pub fn scale(stage: &str, name: &str, by: f64) -> Result<(), String> {
     let is_known = thresholds().iter().any(|each| each.stage == stage && each.name == name);
     is_known.then_some(()).ok_or_else(|| format!("There is no threshold {stage}.{name}"))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn no_two_thresholds_have_one_name() {
+        let all = thresholds();
+        let names: BTreeSet<(&str, &str)> = all.iter().map(|each| (each.stage, each.name)).collect();
+        assert_eq!(names.len(), all.len());
+    }
+}

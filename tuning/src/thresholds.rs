@@ -106,3 +106,16 @@ impl<T: Scaled, const N: usize> Scaled for [T; N] {
         self.map(|each| each.scaled(by))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whole_numbers_move_by_one_at_least_and_every_part_of_a_threshold_moves() {
+        assert_eq!((3_usize.scaled(0.8), 3_usize.scaled(1.25), 40_u32.scaled(1.25)), (2, 4, 50));
+        assert_eq!((0.5, 8_i32).scaled(0.5), (0.25, 4));
+        assert_eq!([2.0, 4.0].scaled(1.25), [2.5, 5.0]);
+        assert_eq!(Duration::from_secs(2).scaled(1.5), Duration::from_secs(3));
+    }
+}
