@@ -353,12 +353,12 @@ impl MotorMonitor {
     /// Whether the motor is off and all that is counted is slow: a load sways in the backlash of its gear.
     fn sways(&self, stretch: &Stretch) -> bool {
         let Stretch { from, to, speed_before } = stretch;
-        let begin = from.t - MONITOR.speed_s;
-        let given = || self.duties.iter().filter(|given| given.0 >= begin);
+        let later = || self.duties.iter().rev().take_while(|given| given.0 > from.t);
+        let goal = self.duties.iter().rev().find(|given| given.0 <= from.t);
+        // Not only once the ramp to nought is over: a load that was braked swings back before.
         let off = !self.in_loop
-            && self.loop_until_s < begin
-            && self.duty_at(begin) == 0.0
-            && given().all(|given| given.1 == 0.0);
+            && self.loop_until_s < from.t - MONITOR.speed_s
+            && goal.into_iter().chain(later()).all(|given| given.1 == 0.0);
         let slow = MONITOR.swaying * self.gain;
         off && speed_before.abs() < slow && (to.counts - from.counts).abs() < slow * (to.t - from.t)
     }
@@ -605,5 +605,45 @@ impl MotorMonitor {
         let young_s = (0.5 * (alarm_s - self.first_s)).clamp(0.01, 0.5);
         let tau_s = self.tau_bounds_s.map_or(young_s, |tau| (tau.0 * tau.1).sqrt());
         (if self.emf_gain > 0.0 { self.emf_gain } else { self.gain }, tau_s)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A motor braked at 0.31 since 0.95 s and turned off at 0.99 s, whose load swings back by `scale` times 29 counts when it should stand.
+    fn seen_swinging(scale: f64) -> Result<(), Cause> {
+        let mut monitor = MotorMonitor { start_duty: 0.06, ..MotorMonitor::default() };
+        monitor.know(&PlantModel {
+            gain_counts_per_s: 11_900.0,
+            tau_s: 0.11,
+            coulomb_duty: 0.03,
+            load_duty: 0.0,
+            drive_limit: None,
+            brake_limit: None,
+            sag: 0.0,
+        });
+        monitor.drive(0.0, 0.0);
+        monitor.drive(0.95, 0.31);
+        monitor.drive(0.99, 0.0);
+        let counts = [-61.0, -64.0, -54.0, -48.0, -46.0, -45.0, -44.0, -27.0, -19.0, -15.0];
+        counts.into_iter().enumerate().try_for_each(|(n, counts)| {
+            let t = 0.96 + 0.015 * n as f64;
+            monitor.see(&Point {
+                t,
+                counts: scale * counts,
+                duty: None,
+                amps: None,
+                volts: None,
+                limited: false,
+            })
+        })
+    }
+
+    #[test]
+    fn a_braked_load_that_swings_back_while_the_duty_still_ramps_down_is_no_fault() {
+        assert_eq!(seen_swinging(1.0), Ok(()));
+        assert_eq!(seen_swinging(40.0), Err(Cause::Stalled), "no load swings back that fast");
     }
 }
