@@ -21,6 +21,7 @@ mod tests {
     use crate::model::{Lag, PlantModel};
     use crate::plain_law::PlainLaw;
     use crate::score::POSITION_OVERSHOOT;
+    use crate::ticks::velocity_test;
 
     fn task(level: f64) -> Task<PlainLaw> {
         let lag = Lag { filter_s: 0.004, delay_ticks: 1.0 };
@@ -79,6 +80,21 @@ mod tests {
             // A PD has no dead zone of a count, and each search ends somewhere near its best.
             let (pd, pid) = (cost(design_pd(&task)), cost(design_pid(&task)));
             assert!(pid <= 1.15 * pd, "tau {tau_s} s: {pid} with an integral, {pd} without");
+        }
+    }
+
+    #[test]
+    fn a_quick_motor_does_not_overshoot_where_its_current_limit_comes_late() {
+        for (tau_s, delay_ticks) in [(0.006, 0.2), (0.008, 0.5), (0.010, 1.2), (0.014, 1.0)] {
+            let task = task(50.0);
+            let plant =
+                PlantModel { tau_s, gain_counts_per_s: 160_000.0, drive_limit: Some(0.39), ..task.plant };
+            let lag = Lag { filter_s: 0.0, delay_ticks };
+            let task = Task { plant, lag, worst_lag: lag, qpps: 150_000.0, ..task };
+            let gains = design_velocity(&task).expect("gains").gains;
+            let unlimited = PlantModel { drive_limit: None, ..plant };
+            let overshoot = velocity_test(&unlimited, &task.law, lag, &gains, task.qpps).overshoot;
+            assert!(overshoot < 0.25, "tau {tau_s} s: {overshoot} without the limit");
         }
     }
 
