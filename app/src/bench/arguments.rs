@@ -52,6 +52,20 @@ pub struct BenchArgs {
     pub replace: Replace,
 }
 
+impl BenchArgs {
+    /// The first option given that changes nothing but `bench tuning`.
+    pub fn of_tuning(&self) -> Option<&'static str> {
+        let given = [
+            ("--faults", self.faults),
+            ("--ways", self.ways),
+            ("--scale", self.scale.is_some()),
+            ("--sensitivity", !self.sensitivity.is_empty()),
+            ("--write-oracle", self.write_oracle.is_some()),
+        ];
+        given.into_iter().find_map(|(option, is_given)| is_given.then_some(option))
+    }
+}
+
 /// A threshold of the tuner and what it is multiplied by.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scale {

@@ -81,6 +81,10 @@ fn run(args: &BenchArgs, out: &mut Output, interrupt: &Interrupt) -> Exit {
     if args.what.contains(&BenchArg::Tuning) {
         return tuning::run(args, out, interrupt);
     }
+    if let Some(option) = args.of_tuning() {
+        say(format!("{option} is an option of `bench tuning`, which was not asked for."));
+        return Exit::Usage;
+    }
     let effort = if args.quick { QUICK } else { FULL };
     let mut figures = Vec::new();
     for what in wanted(&args.what) {

@@ -6,6 +6,7 @@ mod causes;
 mod cli;
 mod cli_as_read;
 mod cli_backups;
+mod cli_bench;
 mod cli_can;
 mod cli_drive;
 mod cli_ends;

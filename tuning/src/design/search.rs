@@ -10,8 +10,8 @@ use crate::thresholds::thresholds;
 thresholds! {
     /// How gains go up from near zero.
     SEARCH: Thresholds {
-        /// Factor from one try to the next, before the last step is halved.
-        ratio: f64 = 1.25,
+        /// By what share of them gains go up from one try to the next, before the last step is halved.
+        rise: f64 = 0.25,
     }
 }
 
@@ -63,12 +63,12 @@ pub(super) fn ascend<L: Law>(
     top: f64,
     gains: impl Fn(f64) -> Gains,
 ) -> Option<f64> {
-    let mut factor = top * 1e-4;
+    let (mut factor, ratio) = (top * 1e-4, 1.0 + SEARCH.rise);
     loops.within(task, &gains(factor))?;
-    while factor < top && loops.within(task, &gains(factor * SEARCH.ratio)).is_some() {
-        factor *= SEARCH.ratio;
+    while factor < top && loops.within(task, &gains(factor * ratio)).is_some() {
+        factor *= ratio;
     }
-    let (mut low, mut high) = (factor, factor * SEARCH.ratio);
+    let (mut low, mut high) = (factor, factor * ratio);
     for _ in 0..4 {
         let middle = (low * high).sqrt();
         if loops.within(task, &gains(middle)).is_some() { low = middle } else { high = middle }
