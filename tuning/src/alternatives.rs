@@ -9,6 +9,7 @@
 use crate::design::{Design, Task, deadzone, direct_gains};
 use crate::law::Law;
 use crate::linear::{DiscretePlant, LoopPlant};
+use crate::margin::MARGIN;
 use crate::model::{Gains, Pid};
 use crate::proposal::design_for;
 use crate::report::Report;
@@ -20,10 +21,8 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 thresholds! {
-    /// How far the gains of a rule are lowered until they may be tried.
+    /// How far the gains of a rule are lowered until they may be tried: to the sensitivity that gains may have without a warning.
     ALTERNATIVES: Thresholds {
-        /// Highest maximum sensitivity (Ms) with which a rule is tried on a machine; beyond it its gains are lowered.
-        most_ms: f64 = 1.8,
         /// Factor by which all gains are lowered at a time.
         lowered: f64 = 0.85,
         /// How often they are lowered at the most: to a hundredth.
@@ -227,7 +226,7 @@ pub(crate) fn proposed<L: Law>(report: &Report<L>, task: &Task<L>) -> Option<(De
     let mut gains = gains_of(rule, report, task, &seen(report, task))?;
     for lowered in 0..ALTERNATIVES.most_lowered {
         let design = promised(task, gains);
-        let is_fit = design.ms <= ALTERNATIVES.most_ms && design.noise_duty <= task.goal.noise_duty;
+        let is_fit = design.ms <= MARGIN.most_ms && design.noise_duty <= task.goal.noise_duty;
         if is_fit && is_stable(task, &gains) {
             return Some((design, lowered > 0));
         }

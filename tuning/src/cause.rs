@@ -181,7 +181,7 @@ causes! {
     /// The loop of the controller was left switched off at the end of a run that found something wrong with the machine.
     LoopOff "The controller's loop was left switched off (DISABLEPID in FUNCTION, or MF, in RAM), since with this it could drive the motor \
         away. When the fault is remedied, arm or drive again: that switches the loop on where the motor stands.";
-    /// A step or a relay was asked for where there is none.
+    /// The controller's own test was asked for a loop that it does not tune.
     OnlyFree "The controller's own test is for the velocity loop of a motor that may turn freely, and for PD and PID of a position. Choose one of these, or fit, step or relay.";
     /// Its loop always has the motor.
     NoOpenLoop "This controller takes no duty, so that neither a step nor a relay can be made. Choose the method fit.";

@@ -22,7 +22,9 @@ fn a_threshold_that_is_scaled_changes_what_the_bench_finds() {
 fn the_sensitivity_of_a_stage_is_a_row_for_each_of_its_thresholds() {
     let ran = bench(&["tuning", "--plants", "1", "--sensitivity", "search"]).ended_with(DONE);
     let rows: Vec<&str> = ran.stdout.lines().collect();
-    assert!(matches!(rows[..], [row] if row.starts_with("| SEARCH.rise | 0.25 | ")), "{ran:#?}");
+    let begins = ["| SEARCH.rise | 0.25 | ", "| SEARCH.worst_ms | 1.12 | ", "| SEARCH.light_ms | 1.4 | "];
+    assert_eq!(rows.len(), begins.len(), "{ran:#?}");
+    assert!(rows.iter().zip(begins).all(|(row, begin)| row.starts_with(begin)), "{ran:#?}");
 }
 
 #[test]

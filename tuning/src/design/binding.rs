@@ -1,6 +1,6 @@
 //! Which bound keeps gains from being made stiffer: what a person who turns the level wants to know when it does little.
 
-use super::search::Loops;
+use super::search::{Loops, SEARCH};
 use super::task::Task;
 use crate::law::Law;
 use crate::linear::LoopPlant;
@@ -36,10 +36,6 @@ thresholds! {
     BINDING: Thresholds {
         /// Factor by which all gains are raised: a bound that they then break was near.
         near: f64 = 1.25,
-        /// Sensitivity that a design may have with the worst lag, as a multiple of that of its goal.
-        worst_ms: f64 = 1.12,
-        /// Sensitivity that it may have with half the inertia, as a multiple of that of its goal.
-        light_ms: f64 = 1.4,
     }
 }
 
@@ -62,8 +58,8 @@ fn shares<L: Law>(task: &Task<L>, loops: &Loops, gains: &Gains) -> [(Bound, f64)
     let integral = 1.01 * gains.velocity.i * task.least_integral_s / gains.velocity.p.max(f64::MIN_POSITIVE);
     [
         (Bound::Sensitivity, nominal.ms / task.goal.ms),
-        (Bound::Lag, ms(&loops.worst) / (BINDING.worst_ms * task.goal.ms)),
-        (Bound::LightLoad, ms(&loops.light) / (BINDING.light_ms * task.goal.ms)),
+        (Bound::Lag, ms(&loops.worst) / (SEARCH.worst_ms * task.goal.ms)),
+        (Bound::LightLoad, ms(&loops.light) / (SEARCH.light_ms * task.goal.ms)),
         (Bound::DutyNoise, nominal.noise_duty * task.noise_factor / task.goal.noise_duty),
         (Bound::Backlash, integral),
     ]

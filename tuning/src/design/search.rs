@@ -8,10 +8,14 @@ use crate::score::Score;
 use crate::thresholds::thresholds;
 
 thresholds! {
-    /// How gains go up from near zero.
-    SEARCH: Thresholds {
+    /// How gains go up from near zero, and what they may not pass.
+    pub(super) SEARCH: Thresholds {
         /// By what share of them gains go up from one try to the next, before the last step is halved.
         rise: f64 = 0.25,
+        /// Sensitivity that a design may have with the worst lag, as a multiple of that of its goal.
+        worst_ms: f64 = 1.12,
+        /// Sensitivity that it may have with half the inertia, as a multiple of that of its goal.
+        light_ms: f64 = 1.4,
     }
 }
 
@@ -43,8 +47,8 @@ impl Loops {
         let margins = self.nominal.margins(gains, task.qpps);
         let kept = margins.ms <= task.goal.ms
             && margins.noise_duty * task.noise_factor <= task.goal.noise_duty
-            && self.worst.margins(gains, task.qpps).ms <= 1.12 * task.goal.ms
-            && self.light.margins(gains, task.qpps).ms <= 1.4 * task.goal.ms;
+            && self.worst.margins(gains, task.qpps).ms <= SEARCH.worst_ms * task.goal.ms
+            && self.light.margins(gains, task.qpps).ms <= SEARCH.light_ms * task.goal.ms;
         kept.then_some(margins)
     }
 
