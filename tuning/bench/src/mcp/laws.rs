@@ -49,22 +49,22 @@ pub struct LawRun {
     pub report: Report<ControlLaw>,
     /// What its gains are worth; the cost is over that of no optimum.
     pub judged: Judgement,
-    /// The sensitivity of the true velocity loop and the one that was promised.
+    /// The sensitivity of the true loop and the one that was promised.
     pub ms: Option<(f64, f64)>,
 }
 
 impl LawRun {
-    /// Runs the tuner on the velocity loop of a plant.
+    /// Runs the tuner on a loop of a plant.
     #[must_use]
-    pub fn of(plant: PacketSpecimen) -> Self {
-        let (report, _) = tune_plant(&plant, &request_of(&plant, Method::Velocity));
+    pub fn of(plant: PacketSpecimen, method: Method) -> Self {
+        let (report, _) = tune_plant(&plant, &request_of(&plant, method));
         let under_test = UnderTest::new(plant.clone());
         let nothing = Optimum { cost: 1.0, duty_rms: 0.08, gains: Gains::default() };
         let judged = judge_report(&under_test, &nothing, &report);
         let is_given = report.verdict != Verdict::Refused;
         let ms = report.design.filter(|_| is_given).map(|design| {
             let truth = &under_test.truth.nominal;
-            (linear(truth, &under_test, Method::Velocity, &report.proposed).0.ms, design.ms)
+            (linear(truth, &under_test, method, &report.proposed).0.ms, design.ms)
         });
         Self { plant, report, judged, ms }
     }
@@ -139,8 +139,8 @@ pub struct LawRow {
 
 /// Runs them.
 #[must_use]
-pub fn law_runs(seed: u64, plants: usize) -> Vec<LawRun> {
-    (0..plants).into_par_iter().map(|number| LawRun::of(specimen_under_law(seed, number))).collect()
+pub fn law_runs(seed: u64, plants: usize, method: Method) -> Vec<LawRun> {
+    (0..plants).into_par_iter().map(|number| LawRun::of(specimen_under_law(seed, number), method)).collect()
 }
 
 /// Sums them up.

@@ -80,7 +80,7 @@ fn each_law_is_found_and_its_gains_hold_on_the_true_plant() {
 /// runs others.
 #[test]
 fn twenty_four_plants_under_laws_of_90_to_1250_hz_are_tuned_for_the_law_that_each_has() {
-    let runs = law_runs(905, 24);
+    let runs = law_runs(905, 24, Method::Velocity);
     for run in &runs {
         println!("{}", run.line());
         let Some(found) = run.report.law else { continue };
