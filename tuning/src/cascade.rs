@@ -23,7 +23,8 @@ pub const CASCADE: Facts = Facts {
     filters_s: &FILTERS_S,
     delays_ticks: &DELAYS,
     rates_hz: &[],
-    unmodelled_ticks: 0.5,
+    // Half a tick at the usual 300 Hz.
+    unmodelled_s: 0.5 / 300.0,
     integral_times: (30.0, 0.65),
 };
 

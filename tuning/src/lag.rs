@@ -147,6 +147,9 @@ pub struct LagFit {
     pub tau_scale: f64,
     /// Reduced chi-square of the best.
     pub chi_square: f64,
+    /// Whether the speed may not be filtered at all, so that the whole lag lies between the controller and the torque, where a loop on the position meets it too.
+    #[serde(default)]
+    pub may_lack_filter: bool,
 }
 
 impl LagFit {
@@ -184,18 +187,9 @@ pub fn fit_lag<L: Law>(
     }
     let tick_s = law.tick_s();
     let known = Known::new(stretches, plant, law, qpps, sd_ln_tau);
-    let mut found: Vec<(f64, Vector6<f64>, Problem<'_, L>)> = Vec::new();
-    for (filter_s, delay_ticks) in STARTS {
-        let start = known.inside(filter_s, delay_ticks * tick_s);
-        let problem = Problem { known: &known, q: start };
-        let search = LevenbergMarquardt::new().with_patience(4).with_ftol(LAG.enough).with_xtol(LAG.enough);
-        let (problem, report) = search.minimize(problem);
-        if report.objective_function.is_finite() {
-            found.push((2.0 * report.objective_function, problem.q, problem));
-        }
-    }
+    let found: Vec<(f64, Problem<'_, L>)> = STARTS.iter().filter_map(|start| known.fit(*start)).collect();
     let best = found.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let readings = best.2.known.readings.max(1) as f64;
+    let readings = known.readings.max(1) as f64;
     let chi_square = best.0 / readings;
     let scale = chi_square.max(1.0);
     let loud = 1.0 + (known.loudest() / LAG_WIDTHS.loud_duty).powi(2);
@@ -203,21 +197,32 @@ pub fn fit_lag<L: Law>(
     let floor_s =
         LAG_WIDTHS.unmodelled.0.hypot(LAG_WIDTHS.unmodelled.1 * tick_s) * chi_square.clamp(least, most);
     let (mut shortest, mut longest) = (f64::INFINITY, 0.0_f64);
-    for (_, q, problem) in found.iter().filter(|other| other.0 <= best.0 + LAG_WIDTHS.likely * scale) {
-        let total = known.parts(q).iter().sum::<f64>();
+    let is_likely = |misfit: f64| misfit <= best.0 + LAG_WIDTHS.likely * scale;
+    for (_, problem) in found.iter().filter(|other| is_likely(other.0)) {
+        let total = known.parts(&problem.q).iter().sum::<f64>();
         let sd = loud * (problem.deviation() * scale.sqrt()).hypot(floor_s);
         shortest = shortest.min(total - LAG_WIDTHS.deviations * sd);
         longest = longest.max(total + LAG_WIDTHS.deviations * sd);
     }
-    let [filter_s, delay_s, winding_s] = known.parts(&best.1);
+    let without_filter = Known { has_filter: false, ..known.clone() };
+    let may_lack_filter = without_filter.fit((0.0, STARTS[0].1)).is_some_and(|other| is_likely(other.0));
+    let [filter_s, delay_s, winding_s] = known.parts(&best.1.q);
     let lag = Lag { filter_s, delay_ticks: (delay_s + winding_s) / tick_s };
     let total_s = lag.total_s(tick_s);
     let worst = Lag { delay_ticks: lag.delay_ticks + (longest - total_s).max(0.0) / tick_s, ..lag };
-    let tau_scale = (best.1[3] * UNITS[3]).exp();
-    Some(LagFit { lag, worst, interval_s: (shortest.max(0.0), longest), tau_scale, chi_square })
+    let tau_scale = (best.1.q[3] * UNITS[3]).exp();
+    Some(LagFit {
+        lag,
+        worst,
+        interval_s: (shortest.max(0.0), longest),
+        tau_scale,
+        chi_square,
+        may_lack_filter,
+    })
 }
 
 /// What the fit goes by.
+#[derive(Clone)]
 struct Known<'a, L: Law> {
     stretches: &'a [Stretch],
     /// Noise of the duty of each.
@@ -227,6 +232,8 @@ struct Known<'a, L: Law> {
     qpps: f64,
     sd_ln_tau: f64,
     readings: usize,
+    /// Whether the speed may be filtered.
+    has_filter: bool,
 }
 
 impl<'a, L: Law> Known<'a, L> {
@@ -251,7 +258,16 @@ impl<'a, L: Law> Known<'a, L> {
             qpps,
             sd_ln_tau: (factor * sd_ln_tau).clamp(least, most),
             readings: stretches.iter().map(|stretch| readings(&stretch.record)).sum(),
+            has_filter: true,
         }
+    }
+
+    /// The fit from a filter, s, and a delay, ticks, with its misfit.
+    fn fit(&self, (filter_s, delay_ticks): (f64, f64)) -> Option<(f64, Problem<'_, L>)> {
+        let start = self.inside(filter_s, delay_ticks * self.law.tick_s());
+        let search = LevenbergMarquardt::new().with_patience(4).with_ftol(LAG.enough).with_xtol(LAG.enough);
+        let (problem, report) = search.minimize(Problem { known: self, q: start });
+        report.objective_function.is_finite().then_some((2.0 * report.objective_function, problem))
     }
 
     /// The loudest duty.
@@ -263,7 +279,8 @@ impl<'a, L: Law> Known<'a, L> {
     fn longest(&self) -> [f64; 2] {
         let facts = self.law.facts();
         let most = |all: &[f64]| all.iter().copied().fold(0.0, f64::max);
-        [most(facts.filters_s), most(facts.delays_ticks) * self.law.tick_s()]
+        let longest_filter = if self.has_filter { most(facts.filters_s) } else { 0.0 };
+        [longest_filter, most(facts.delays_ticks) * self.law.tick_s()]
     }
 
     /// Start values within the bounds.
@@ -614,6 +631,19 @@ mod tests {
             let (got, wanted) = (found.lag.total_s(law.tick_s()), lag.total_s(law.tick_s()));
             assert!((got - wanted).abs() < 0.0025, "{got} s instead of {wanted} s: {found:?}");
             assert!(found.chi_square < 1.5, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn a_lag_without_a_filter_is_not_put_down_to_one_and_a_long_filter_is_seen() {
+        let law = PlainLaw::default();
+        for (lag, may_lack_filter) in [
+            (Lag { filter_s: 0.0, delay_ticks: 0.5 }, true),
+            (Lag { filter_s: 0.0, delay_ticks: 1.0 }, true),
+            (Lag { filter_s: 0.010, delay_ticks: 0.0 }, false),
+        ] {
+            let found = fit_lag(&[known_record(lag)], &PLANT, &law, 40_000.0, 0.03).expect("enough readings");
+            assert_eq!(found.may_lack_filter, may_lack_filter, "{lag:?}: {found:?}");
         }
     }
 

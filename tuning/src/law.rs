@@ -42,8 +42,8 @@ pub struct Facts {
     pub delays_ticks: &'static [f64],
     /// Ticks in a second that the loop may have, where no manual says it and moves have to; else none.
     pub rates_hz: &'static [u32],
-    /// Lag that the model leaves out, ticks: the winding, a springy shaft.
-    pub unmodelled_ticks: f64,
+    /// Lag that the model leaves out, s: a springy shaft, which knows nothing of the controller's ticks.
+    pub unmodelled_s: f64,
     /// The longest integral time of a position loop that is tried, in time constants of the motor, and the ratio from one to the next.
     pub integral_times: (f64, f64),
 }

@@ -287,6 +287,13 @@ fn design<L: LawProbe>(
     let task = settle_lag(guard, request, task, report)?;
     let is_direct = matches!(request.method, Method::Pd | Method::Pid);
     let task = if is_direct && task.law.filters_derivative() { filtered(task) } else { task };
+    // A filter is met by a loop's speed alone, a delay or a winding by its position too: where the record does not tell them apart, the worst is the latter.
+    let may_lack_filter = report.lag.is_some_and(|lag| lag.may_lack_filter);
+    let task = if request.method != Method::Velocity && may_lack_filter {
+        Task { worst_lag: filtered(task).worst_lag, ..task }
+    } else {
+        task
+    };
     let task = if request.method == Method::Pid {
         with_backlash(guard, request, task, probe, report)?
     } else {
@@ -543,11 +550,11 @@ fn with_lag<L: Law>(task: Task<L>, found: &LagFit) -> Task<L> {
     let facts = task.law.facts();
     // The winding is measured with the rest. A springy shaft is found by raising the gains on the machine; where they cannot be raised, there has to be
     // room for it.
-    let unmodelled_ticks = if facts.has_duty { 0.0 } else { facts.unmodelled_ticks };
-    let worst_lag = Lag { delay_ticks: found.worst.delay_ticks + unmodelled_ticks, ..found.worst };
+    let tick_s = task.law.tick_s();
+    let unmodelled_s = if facts.has_duty { 0.0 } else { facts.unmodelled_s };
+    let worst_lag = Lag { delay_ticks: found.worst.delay_ticks + unmodelled_s / tick_s, ..found.worst };
     // A record that says little leaves what such a controller may have.
     let longest = facts.longest_lag;
-    let tick_s = task.law.tick_s();
     let is_wide = found.interval_s.1 - found.interval_s.0 > TUNE.widest_lag_s;
     let is_within = found.lag.total_s(tick_s) < longest.total_s(tick_s);
     let worst_lag = if is_wide && is_within && worst_lag.total_s(tick_s) > longest.total_s(tick_s) {

@@ -77,6 +77,8 @@ thresholds! {
         most_unseen_overshoot: f64 = 0.10,
         /// Factor by which they are lowered, or the goal that they are designed for.
         back_off: f64 = 0.7,
+        /// The share of the bound to which a duty is lowered that is too loud and nothing else: figures of a second of polls spread by a tenth.
+        quieter: f64 = 0.92,
         /// Lower speed of the velocity trial, as a share of full speed.
         low: f64 = 0.15,
         /// Higher speed of the velocity trial, as a share of full speed.
@@ -253,7 +255,7 @@ fn try_until_smooth<L: Law>(
             let softer = if only_over {
                 Design { gains: less_integral(&design.gains), ..design }
             } else {
-                softer(request, task, &design)
+                softer(request, task, &design, &measured)
             };
             propose(report, request, task, softer, guard.proposed_travel(task.qpps));
         }
@@ -309,7 +311,8 @@ fn leave_room<L: Law>(
     let Some(design) = report.design.filter(|design| can_be_raised && damped(&design.gains)) else {
         return Ok(None);
     };
-    let found = match headroom(guard, task, &design.gains, request.excitation) {
+    let is_odd = report.lag.is_some_and(|lag| lag.is_unexplained());
+    let found = match headroom(guard, task, &design.gains, (request.excitation, is_odd)) {
         // Too little room for it: nothing was heard.
         Err(Cause::TravelLimit) => return guard.come_to_rest().map(|()| None),
         found => found?,
@@ -356,15 +359,24 @@ pub(crate) fn is_rougher(design: &Design, measured: &Measured) -> bool {
 
 /// How rough the machine is over what a design may show: the worst of duty, overshoot and oscillation. 1 is the bound.
 fn roughness(design: &Design, measured: &Measured) -> f64 {
+    loudness(design, measured).max(unsteadiness(design, measured))
+}
+
+/// The duty's noise over what a design may show.
+fn loudness(design: &Design, measured: &Measured) -> f64 {
+    measured.duty_rms / (1.8 * design.noise_duty).clamp(0.04, 0.10)
+}
+
+/// Overshoot and oscillation over what a design may show.
+fn unsteadiness(design: &Design, measured: &Measured) -> f64 {
     let is_position = design.gains.position.is_some();
     let (least_over, doubt, ripple) = if is_position {
         (VERIFY.most_position_overshoot, VERIFY.position_doubt, VERIFY.most_position_ripple)
     } else {
         (VERIFY.most_overshoot, 0.03, VERIFY.most_ripple)
     };
-    let active = measured.duty_rms / (1.8 * design.noise_duty).clamp(0.04, 0.10);
     let over = measured.overshoot / (design.score.overshoot + doubt).max(least_over);
-    active.max(over).max(measured.ripple / ripple)
+    over.max(measured.ripple / ripple)
 }
 
 /// Whether gains that cannot be lowered further may be proposed, with the warning that they were lowered.
@@ -379,25 +391,26 @@ fn less_integral(gains: &Gains) -> Gains {
 
 /// What lowers a design: a position loop is designed anew for a softer goal than what it promised, since gains that are merely scaled
 /// end a move in a long creep, which sticks and slips in the backlash of a real machine. A velocity loop is scaled, and so is what a textbook rule gave.
-fn softer<L: Law>(request: &Request<L>, task: &Task<L>, design: &Design) -> Design {
-    let scaled = Design { gains: lowered(&design.gains), ..*design };
+fn softer<L: Law>(request: &Request<L>, task: &Task<L>, design: &Design, measured: &Measured) -> Design {
+    // The noise of a duty goes with the gains: where nothing else is wrong, they are lowered by what it is too loud.
+    let is_loud_alone = unsteadiness(design, measured) <= 1.0;
+    let share = if is_loud_alone {
+        (VERIFY.quieter / loudness(design, measured)).clamp(VERIFY.back_off, VERIFY.quieter)
+    } else {
+        VERIFY.back_off
+    };
+    let scaled = Design { gains: lowered(&design.gains, share, is_loud_alone), ..*design };
     if request.method == Method::Velocity || request.identification != Identification::Fit {
         return scaled;
     }
-    let goal = Goal {
-        ms: 1.0 + VERIFY.back_off * (design.ms - 1.0),
-        noise_duty: VERIFY.back_off * design.noise_duty,
-    };
+    let goal = Goal { ms: 1.0 + share * (design.ms - 1.0), noise_duty: share * design.noise_duty };
     design_for(request.method, &Task { goal, ..*task }).unwrap_or(scaled)
 }
 
-/// Less gain, and less again of the integral.
-fn lowered(gains: &Gains) -> Gains {
-    let lower = |pid: Pid| Pid {
-        p: pid.p * VERIFY.back_off,
-        i: pid.i * VERIFY.back_off * VERIFY.back_off,
-        d: pid.d * VERIFY.back_off,
-    };
+/// Less gain, and less again of the integral, whose time stays as it is where the duty is too loud and nothing else.
+fn lowered(gains: &Gains, share: f64, is_loud_alone: bool) -> Gains {
+    let integral = if is_loud_alone { share } else { share * share };
+    let lower = |pid: Pid| Pid { p: pid.p * share, i: pid.i * integral, d: pid.d * share };
     Gains { velocity: lower(gains.velocity), position: gains.position.map(lower), ..*gains }
 }
 
@@ -572,4 +585,70 @@ fn judge_move(points: &[Point], target: f64, moved: f64, late_s: f64, step: f64)
     let range = positions.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
     let ripple = (range.1 - range.0 - VERIFY.rounding_counts).max(0.0) / step;
     Measured { overshoot, duty_rms, ripple, headroom: None }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::design::USUAL_OVERSHOOT;
+    use crate::model::{Lag, PlantModel};
+    use crate::plain_law::PlainLaw;
+    use crate::score::Score;
+
+    const DESIGN: Design = Design {
+        gains: Gains {
+            velocity: Pid { p: 20.0, i: 4.0, d: 0.0 },
+            velocity_sum: 0.0,
+            position: None,
+            max_integral: 0.0,
+            deadzone_counts: 0.0,
+        },
+        score: Score { setpoint: 0.0, load: 0.0, overshoot: 0.0, settling_s: 0.1 },
+        ms: 1.2,
+        noise_duty: 0.08,
+    };
+
+    fn softer_velocity(measured: Measured) -> Pid {
+        let plant = PlantModel {
+            gain_counts_per_s: 20_000.0,
+            tau_s: 0.5,
+            coulomb_duty: 0.05,
+            load_duty: 0.0,
+            drive_limit: None,
+            brake_limit: None,
+            sag: 0.0,
+        };
+        let task = Task {
+            plant,
+            law: PlainLaw::default(),
+            lag: Lag::default(),
+            worst_lag: Lag::default(),
+            qpps: 20_000.0,
+            goal: Goal::of_level(50.0),
+            noise_factor: 1.0,
+            backlash_counts: 0.0,
+            least_integral_s: 0.0,
+            most_overshoot: USUAL_OVERSHOOT,
+        };
+        softer(&Request::default(), &task, &DESIGN, &measured).gains.velocity
+    }
+
+    #[test]
+    fn a_duty_that_is_a_little_too_loud_costs_a_little_of_the_gains_and_keeps_the_integral_time() {
+        // A flywheel on a coarse encoder: 0.104 of full duty where 0.100 is allowed.
+        let loud = softer_velocity(Measured { duty_rms: 0.104, ..Measured::default() });
+        let Pid { p, i, .. } = DESIGN.gains.velocity;
+        assert!(loud.p > 0.85 * p && loud.p < 0.92 * p, "{loud:?}");
+        assert!((loud.i / loud.p - i / p).abs() < 1e-9, "{loud:?}");
+        let louder = softer_velocity(Measured { duty_rms: 0.3, ..Measured::default() });
+        assert!((louder.p / p - VERIFY.back_off).abs() < 1e-9, "not all at once: {louder:?}");
+    }
+
+    #[test]
+    fn an_oscillation_costs_a_whole_step_and_more_of_the_integral() {
+        let rough = softer_velocity(Measured { duty_rms: 0.104, ripple: 0.1, ..Measured::default() });
+        let Pid { p, i, .. } = DESIGN.gains.velocity;
+        assert!((rough.p / p - VERIFY.back_off).abs() < 1e-9, "{rough:?}");
+        assert!((rough.i / i - VERIFY.back_off * VERIFY.back_off).abs() < 1e-9, "{rough:?}");
+    }
 }

@@ -303,6 +303,6 @@ pub(crate) fn deadzone<L: Law>(task: &Task<L>) -> f64 {
 fn direct<L: Law>(task: &Task<L>) -> Task<L> {
     let facts = task.law.facts();
     let share = if facts.has_duty { POSITION.raised_share } else { 1.0 };
-    let delay_ticks = task.worst_lag.delay_ticks + share * facts.unmodelled_ticks;
+    let delay_ticks = task.worst_lag.delay_ticks + share * facts.unmodelled_s / task.law.tick_s();
     Task { worst_lag: Lag { delay_ticks, ..task.worst_lag }, ..*task }
 }

@@ -55,7 +55,7 @@ static FACTS: Facts = Facts {
     filters_s: &[0.0],
     delays_ticks: &[0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0],
     rates_hz: &[],
-    unmodelled_ticks: 0.1,
+    unmodelled_s: 0.0005,
     integral_times: (30.0, 0.65),
 };
 

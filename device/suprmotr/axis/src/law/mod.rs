@@ -45,7 +45,7 @@ static FACTS: Facts = Facts {
     filters_s: &[0.0],
     delays_ticks: &[0.0, 0.5, 1.0, 1.5, 2.0, 3.0],
     rates_hz: &RATES_HZ,
-    unmodelled_ticks: 0.5,
+    unmodelled_s: 0.0005,
     integral_times: (30.0, 0.65),
 };
 
