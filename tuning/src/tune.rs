@@ -5,6 +5,7 @@ use crate::axis::EncoderClass;
 use crate::backlash::with_backlash;
 use crate::cause::Cause;
 use crate::design::{Goal, Task, USUAL_OVERSHOOT, design_velocity};
+use crate::experiment::WINDOW;
 use crate::experiment::{
     Probe, go_to, rest, run_free, run_own_position_test, run_own_test, run_position_relay, run_probe,
     run_relay, run_step, run_window,
@@ -434,9 +435,16 @@ fn identify_window<L: Law>(
     (width, about_duty): (f64, Option<f64>),
     report: &mut Report<L>,
 ) -> Result<Found, Cause> {
-    let run = run_window(guard, probe, width, about_duty)?;
-    report.window = Some(run);
-    identify_to_and_fro(guard, probe, run.from_s, run.top_speed / (probe.start_duty + 0.4))
+    let mut oscillate = |guard: &mut ExperimentGuard<'_, L>, share: f64| {
+        let run = run_window(guard, probe, width, (about_duty, share))?;
+        report.window = Some(run);
+        identify_to_and_fro(guard, probe, run.from_s, run.top_speed / (probe.start_duty + 0.4 * share))
+    };
+    match oscillate(guard, 1.0) {
+        // A flywheel in a narrow travel is thrown about by the limit at the usual duties.
+        Err(Cause::CurrentLimited) if about_duty.is_none() => oscillate(guard, WINDOW.gentler),
+        found => found,
+    }
 }
 
 /// A relay about where the axis stands, inside `width` counts where there is one.

@@ -20,4 +20,5 @@ pub use probe::{Probe, run_probe};
 pub use relay::{RelayRun, run_relay};
 pub(crate) use rest::rest;
 pub use step::{StepRun, run_step};
+pub(crate) use window::WINDOW;
 pub use window::{WindowRun, go_to, run_window};

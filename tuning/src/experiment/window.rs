@@ -10,11 +10,13 @@ use serde::{Deserialize, Serialize};
 
 thresholds! {
     /// The strokes within a travel: where they turn, and how long they go on.
-    WINDOW: Thresholds {
+    pub(crate) WINDOW: Thresholds {
         /// Switches at each of the two duties.
         switches: usize = 10,
         /// Duties above the starting one, as shares of full.
         duties: [f64; 2] = [0.22, 0.50],
+        /// What is left of these where the current limit held the motor back for most of the run.
+        gentler: f64 = 0.4,
         /// How far from the middle the axis is to turn round as long as nothing is known of its stopping distance, as a share of the window.
         first_turn_at: f64 = 0.20,
         /// How far from the middle it is to turn round later, as a share of the window.
@@ -58,15 +60,16 @@ pub struct WindowRun {
     pub step_duties: Option<(f64, f64)>,
 }
 
-/// Runs it inside `width` counts around where the axis is now, at two duties about one where that is given. The motor is braked when it returns.
+/// Runs it inside `width` counts around where the axis is now, at two duties about one where that is given, and else at a share of the usual ones. The motor is braked
+/// when it returns.
 pub fn run_window<L: Law>(
     guard: &mut ExperimentGuard<'_, L>,
     probe: &Probe,
     width: f64,
-    about_duty: Option<f64>,
+    (about_duty, share): (Option<f64>, f64),
 ) -> Result<WindowRun, Cause> {
     let chosen = about_duty.map(|duty| about(guard, probe, duty, STEP.half_height)).transpose()?;
-    let usual = WINDOW.duties.map(|above| (probe.start_duty + above).min(guard.options.max_duty));
+    let usual = WINDOW.duties.map(|above| (probe.start_duty + share * above).min(guard.options.max_duty));
     let duties = chosen.map_or(usual, |(low, high)| [low, high]);
     guard.monitor.start_duty = probe.start_duty;
     guard.monitor.stall_amps = probe.stall_amps;

@@ -56,6 +56,19 @@ fn each_method_finds_sound_gains_on_most_machines_and_says_where_it_does_not() {
     }
 }
 
+/// With half of a second of full speed for its travel, the limit has these for more than half of the strokes at the usual duties.
+#[test]
+fn a_flywheel_that_the_current_limit_holds_in_a_narrow_travel_is_tuned_at_less_duty() {
+    for (seed, number) in [(7, 141), (11, 93)] {
+        let plant = specimen(seed, number);
+        let travel = Excitation::Window(0.5 * UnderTest::new(plant.clone()).truth.qpps);
+        let (report, _) =
+            tune_plant(&plant, &Request { excitation: travel, ..request_of(&plant, Method::Velocity) });
+        assert!(assert_sound(&plant, &report, &format!("seed {seed}, plant {number}")));
+        assert!(report.replay().as_ref() == Some(&report), "plant {number}: the replay differs");
+    }
+}
+
 #[test]
 fn each_method_finds_sound_gains_on_most_machines_of_the_other_family() {
     for method in METHODS {

@@ -69,17 +69,20 @@ fn twenty_four_plants_of_another_seed_do_too() {
     assert!(found.lag_error_ms_p95 <= 3.6, "lag: {} ms", found.lag_error_ms_p95);
 }
 
-/// Shafts that swing at 35 to 110 Hz, which polls cannot see: raising the gains finds the oscillation, also where the gains oscillate as they are.
+/// Shafts that swing at 35 to 110 Hz, which polls cannot see: raising the gains finds the oscillation, also where the gains oscillate as they are. That of plant 175 of
+/// seed 11 (a true Ms of 3.46 until it was raised by strokes) floats in its backlash at a steady speed.
 #[test]
 fn springy_shafts_are_never_called_tuned_beyond_the_margin() {
-    for number in [31, 39, 72, 87, 103] {
-        let under_test = UnderTest::new(specimen(7, number));
+    for (seed, number, most_ms) in
+        [(7, 31, 2.6), (7, 39, 2.6), (7, 72, 2.6), (7, 87, 2.0), (7, 103, 2.6), (11, 175, 2.0)]
+    {
+        let under_test = UnderTest::new(specimen(seed, number));
         let (report, _) =
             tune_plant(&under_test.specimen, &request_of(&under_test.specimen, Method::Velocity));
         let nothing = Optimum { cost: 1.0, duty_rms: 0.08, gains: Gains::default() };
         let judged = judge_report(&under_test, &nothing, &report);
         println!("{number}: {:?} {:?}, true Ms {:.2}", report.verdict, report.causes, judged.ms);
-        assert!(judged.stable && judged.ms < 2.6, "plant {number}: a true Ms of {:.2}", judged.ms);
+        assert!(judged.stable && judged.ms < most_ms, "plant {number}: a true Ms of {:.2}", judged.ms);
         let is_promised = report.verdict == Verdict::Tuned;
         assert!(!is_promised || judged.ms <= 1.8, "plant {number} is called tuned at {:.2}", judged.ms);
     }
