@@ -22,7 +22,7 @@ thresholds! {
         /// 2, six of 800 runs are left above an Ms of 1.8 without a warning, with multiples up to 2.5 three (MEASURED.md).
         derivative_factor: f64 = 3.0,
         /// What is left of the proportional part beside it, as a share, where it cannot be given a target far away: as it is it takes phase, and hides what a shaft does.
-        /// With all of it 4 of 800 PD and PID loops of Motion Minds were left above an Ms of 2, with 0.3 and less none; with none one of them passed for an encoder that
+        /// With all of it 5 of 800 PD and PID loops of Motion Minds were left above an Ms of 2, with 0.3 and less none; with none one of them passed for an encoder that
         /// counts the wrong way.
         proportional_share: f64 = 0.3,
         /// Gains tried, as multiples of the proposed ones, up to the margin that is wanted.
