@@ -290,11 +290,9 @@ fn design<L: LawProbe>(
     let task = if is_direct && task.law.filters_derivative() { filtered(task) } else { task };
     // A filter is met by a loop's speed alone, a delay or a winding by its position too: where the record does not tell them apart, the worst is the latter.
     let may_lack_filter = report.lag.is_some_and(|lag| lag.may_lack_filter);
-    let task = if request.method != Method::Velocity && may_lack_filter {
-        Task { worst_lag: filtered(task).worst_lag, ..task }
-    } else {
-        task
-    };
+    let is_position = request.method != Method::Velocity;
+    let worst_lag = if is_position && may_lack_filter { filtered(task).worst_lag } else { task.worst_lag };
+    let task = Task { worst_lag, ..task };
     let task = if request.method == Method::Pid {
         with_backlash(guard, request, task, probe, report)?
     } else {
@@ -435,6 +433,7 @@ fn identify_window<L: Law>(
     (width, about_duty): (f64, Option<f64>),
     report: &mut Report<L>,
 ) -> Result<Found, Cause> {
+    let middle = guard.points.last().map_or(0.0, |point| point.counts);
     let mut oscillate = |guard: &mut ExperimentGuard<'_, L>, share: f64| {
         let run = run_window(guard, probe, width, (about_duty, share))?;
         report.window = Some(run);
@@ -442,7 +441,10 @@ fn identify_window<L: Law>(
     };
     match oscillate(guard, 1.0) {
         // A flywheel in a narrow travel is thrown about by the limit at the usual duties.
-        Err(Cause::CurrentLimited) if about_duty.is_none() => oscillate(guard, WINDOW.gentler),
+        Err(Cause::CurrentLimited) if about_duty.is_none() => {
+            go_to(guard, probe, middle)?;
+            oscillate(guard, WINDOW.gentler)
+        }
         found => found,
     }
 }
