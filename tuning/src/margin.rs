@@ -21,7 +21,7 @@ thresholds! {
         /// The multiple that is wanted of a derivative alone: the proportional part takes phase where a shaft oscillates, and is not raised with it. With multiples up to
         /// 2, six of 800 runs are left above an Ms of 1.8 without a warning, with multiples up to 2.5 three (MEASURED.md).
         derivative_factor: f64 = 3.0,
-        /// What is left of the proportional part beside it, as a share, where it cannot be given a target far away: as it is it takes phase, and hides what a shaft does.
+        /// What is left of the proportional part beside it, as a share, where it cannot be given a target far away.
         /// With all of it 5 of 800 PD and PID loops of Motion Minds were left above an Ms of 2, with 0.3 and less none; with none one of them passed for an encoder that
         /// counts the wrong way.
         proportional_share: f64 = 0.3,
@@ -302,7 +302,7 @@ impl<'t, L: Law> Raised<'t, L> {
 }
 
 /// Raises the gains step by step while the motor turns, as far as the duty stays quiet: by strokes to and fro in a travel, and where the loop did what its model does not
-/// explain (`is_odd`), which backlash keeps from showing at a steady speed. The motor is braked at the end; the raised gains stand in the registers then.
+/// explain (`is_odd`), which a steady speed does not always show. The motor is braked at the end; the raised gains stand in the registers then.
 pub(crate) fn headroom<L: Law>(
     guard: &mut ExperimentGuard<'_, L>,
     task: &Task<L>,

@@ -5,9 +5,8 @@ use crate::axis::EncoderClass;
 use crate::backlash::with_backlash;
 use crate::cause::Cause;
 use crate::design::{Goal, Task, USUAL_OVERSHOOT, design_velocity};
-use crate::experiment::WINDOW;
 use crate::experiment::{
-    Probe, go_to, rest, run_free, run_own_position_test, run_own_test, run_position_relay, run_probe,
+    Probe, WINDOW, go_to, rest, run_free, run_own_position_test, run_own_test, run_position_relay, run_probe,
     run_relay, run_step, run_window,
 };
 use crate::experiment_guard::{ExperimentGuard, GuardOptions};
@@ -440,7 +439,7 @@ fn identify_window<L: Law>(
         identify_to_and_fro(guard, probe, run.from_s, run.top_speed / (probe.start_duty + 0.4 * share))
     };
     match oscillate(guard, 1.0) {
-        // A flywheel in a narrow travel is thrown about by the limit at the usual duties.
+        // A flywheel that hardly gathers speed in a narrow travel, for one: less duty asks for less current.
         Err(Cause::CurrentLimited) if about_duty.is_none() => {
             go_to(guard, probe, middle)?;
             oscillate(guard, WINDOW.gentler)
