@@ -264,6 +264,18 @@ impl Cause {
         )
     }
 
+    /// The same fault, had it been there before the run; of a cause that says that something struck in mid-run.
+    #[allow(clippy::wildcard_enum_match_arm, reason = "one answer for all the rest, new members too")]
+    pub(crate) fn at_the_start(self) -> Option<Self> {
+        match self {
+            Self::EncoderLost => Some(Self::EncoderDead),
+            Self::Stalled => Some(Self::ShaftLocked),
+            Self::MotorOpened => Some(Self::MotorOpen),
+            Self::EncoderFlipped => Some(Self::EncoderReversed),
+            _ => None,
+        }
+    }
+
     /// Whether it is distinguished from others by the motor's current.
     #[must_use]
     pub(crate) fn is_by_current(self) -> bool {

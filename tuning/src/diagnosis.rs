@@ -33,7 +33,11 @@ thresholds! {
         /// Share of the misfit of an encoder as it is that a reversed one must stay below for the currents to speak for a reversal.
         agree: f64 = 0.9,
         /// Largest squared error of mirrored speeds over the squared speeds: by itself, and where the currents say the same.
-        mirror_error: (f64, f64) = (0.12, 0.6),
+        mirror_error: (f64, f64) = (0.12, 0.35),
+        /// Share of the largest jump of the speed from which on another one may be a turned encoder.
+        jump: f64 = 0.5,
+        /// Multiples of the rough time constant that are tried: of a motor that is not known yet it may be far too long.
+        mirror_taus: [f64; 5] = [0.05, 0.2, 0.5, 1.0, 2.0],
         /// Least share by which the current of a turning motor is short of that of a standing one; a battery sags by less.
         short: f64 = 0.3,
         /// Duty above which the motor is driven, as a share of full.
@@ -48,6 +52,12 @@ thresholds! {
         same: f64 = 3e-4,
         /// How long the duty takes to come down and the winding's current to follow, in seconds.
         braked_s: f64 = 0.066,
+        /// The same where a duty is in force at once, in seconds: the command, a tick, and the winding's current.
+        braked_at_once_s: f64 = 0.02,
+        /// Current of the first readings of a braked motor that turns, as a share of the stall current.
+        braked_share: f64 = 0.08,
+        /// The same of all readings, where it is clear of their noise too.
+        least_braked: f64 = 0.006,
     }
 }
 
@@ -56,6 +66,8 @@ struct Moment {
     t: f64,
     counts: f64,
     duty: f64,
+    /// The duty of the poll before, which a current that is read just after a change may still be that of.
+    duty_before: f64,
     /// Speed as counted, counts/s.
     speed: f64,
     /// Current over stall current.
@@ -64,15 +76,18 @@ struct Moment {
 
 /// Names what is wrong. `after` are the polls since `alarm_s`, when the duty was taken away.
 pub(crate) fn diagnose(monitor: &MotorMonitor, alarm_s: f64, after: &[Point]) -> Cause {
-    let polls: Vec<Point> = monitor.recent().copied().chain(after.iter().copied()).collect();
+    let last = monitor.recent().next_back();
+    let (last_s, last_counts) = last.map_or((f64::NEG_INFINITY, 0.0), |point| (point.t, point.counts));
+    let later = after.iter().filter(|point| point.t > last_s);
+    let polls: Vec<Point> = monitor.recent().chain(later).copied().collect();
     if is_open(monitor, &polls, alarm_s) {
         return Cause::MotorOpened;
     }
     let moments = moments(monitor, &polls, alarm_s - DIAGNOSIS.before_s);
     let stall = monitor.stall_amps.filter(|stall| *stall > DIAGNOSIS.telling_stall_amps);
-    let (gain, tau_s) = monitor.rough_model(alarm_s);
-    let last = monitor.recent().next_back().map_or(0.0, |point| point.counts);
-    let alive = after.iter().any(|point| (point.counts - last).abs() > DIAGNOSIS.dead_counts);
+    let (known, tau_s) = monitor.rough_model(alarm_s);
+    let gain = if known > 0.0 { known } else { gain_seen(&moments, alarm_s) };
+    let alive = after.iter().any(|point| (point.counts - last_counts).abs() > DIAGNOSIS.dead_counts);
     if gain > 0.0 && outruns(&moments, gain, monitor.load_duty, alarm_s) {
         return Cause::EncoderFlipped;
     }
@@ -83,14 +98,7 @@ pub(crate) fn diagnose(monitor: &MotorMonitor, alarm_s: f64, after: &[Point]) ->
         return Cause::Stalled;
     }
     let hypotheses = Hypotheses { moments: &moments, gain, tau_s, limit: limit_of(monitor), alarm_s };
-    let (stopped, flipped) = (hypotheses.as_counted().min(hypotheses.stands()), hypotheses.flipped());
-    let likeness = hypotheses.likeness_of_mirror();
-    let currents_agree =
-        stall.is_some() && stopped > DIAGNOSIS.objection && flipped < DIAGNOSIS.agree * stopped;
-    let currents_object =
-        stall.is_some() && flipped > DIAGNOSIS.objection && stopped < DIAGNOSIS.better * flipped;
-    let goes_on = likeness < if currents_agree { DIAGNOSIS.mirror_error.1 } else { DIAGNOSIS.mirror_error.0 };
-    if goes_on && !currents_object { Cause::EncoderFlipped } else { Cause::Stalled }
+    if hypotheses.is_flipped(stall.is_some()) { Cause::EncoderFlipped } else { Cause::Stalled }
 }
 
 /// Names why a motor that was pushed of late has not moved, or was counted `backwards`.
@@ -143,10 +151,21 @@ fn moments(monitor: &MotorMonitor, polls: &[Point], from_s: f64) -> Vec<Moment> 
         t: point.t,
         counts: point.counts,
         duty: monitor.duty_at(point.t),
+        duty_before: monitor.duty_at(polls[n - 1].t),
         speed: around(n),
         current: point.amps.zip(stall).map(|(amps, stall)| amps.abs() / stall),
     })
     .collect()
+}
+
+/// Speed over duty of a motor that had not turned for long enough to be known, counts/s: what its current leaves of the duty turns it; 0 where it did not turn.
+fn gain_seen(moments: &[Moment], alarm_s: f64) -> f64 {
+    moments
+        .iter()
+        .filter(|moment| moment.t < alarm_s && moment.speed * moment.duty > 0.0)
+        .map(|moment| (moment.speed.abs(), moment.duty.abs() - moment.current.unwrap_or(0.0)))
+        .filter(|(_, turning)| *turning > DIAGNOSIS.least_duty)
+        .fold(0.0, |most, (speed, turning)| f64::max(most, speed / turning))
 }
 
 fn limit_of(monitor: &MotorMonitor) -> f64 {
@@ -186,17 +205,27 @@ fn turns_unseen(monitor: &MotorMonitor, moments: &[Moment], alarm_s: f64) -> boo
         (DIAGNOSIS.telling_amps / monitor.stall_amps.unwrap_or(f64::INFINITY)).max(DIAGNOSIS.least_duty);
     let off: Vec<f64> = still
         .iter()
-        .filter(|moment| moment.duty.abs() >= least_duty)
-        .filter_map(|moment| Some(1.0 - moment.current? / moment.duty.abs().min(limit)))
+        .map(|moment| (moment.duty.abs().min(moment.duty_before.abs()), moment.current))
+        .filter(|(duty, _)| *duty >= least_duty)
+        .filter_map(|(duty, current)| Some(1.0 - current? / duty.min(limit)))
         .collect();
     let driven_off = middle(off).is_some_and(|middle| middle > DIAGNOSIS.short);
     let stall = monitor.stall_amps.unwrap_or(f64::INFINITY);
-    let braked = still.iter().filter(|moment| moment.duty == 0.0 && moment.t > alarm_s + DIAGNOSIS.braked_s);
+    let braked_s = if monitor.is_abrupt { DIAGNOSIS.braked_at_once_s } else { DIAGNOSIS.braked_s };
+    let braked = still.iter().filter(|moment| moment.duty == 0.0 && moment.t > alarm_s + braked_s);
     let braked: Vec<f64> = braked.filter_map(|moment| moment.current).collect();
-    let first = braked.iter().take(2).sum::<f64>() / braked.len().clamp(1, 2) as f64;
+    let early = || braked.iter().take(2).copied();
+    // A duty that is off at once leaves no current in a standing motor by then, so that one reading tells.
+    let first = if monitor.is_abrupt {
+        early().fold(0.0, f64::max)
+    } else {
+        early().sum::<f64>() / braked.len().clamp(1, 2) as f64
+    };
     // What rings on a spring comes by nought again and again.
-    let least = braked.into_iter().reduce(f64::min).unwrap_or(0.0);
-    driven_off || first > 0.08 || least > (2.0 * monitor.no_current_amps() / stall).max(0.02)
+    let least = braked.iter().copied().reduce(f64::min).unwrap_or(0.0);
+    driven_off
+        || first > DIAGNOSIS.braked_share
+        || least > (2.0 * monitor.no_current_amps() / stall).max(DIAGNOSIS.least_braked)
 }
 
 /// What may have happened, held against the currents.
@@ -211,21 +240,16 @@ struct Hypotheses<'a> {
 impl Hypotheses<'_> {
     fn miss(&self, moment: &Moment, speed: f64) -> f64 {
         let Some(current) = moment.current else { return 0.0 };
-        let expected = (moment.duty - speed / self.gain).abs().min(self.limit);
-        (expected - current).abs().min(DIAGNOSIS.wrong).powi(2)
+        let expected =
+            [moment.duty, moment.duty_before].map(|duty| (duty - speed / self.gain).abs().min(self.limit));
+        // What a blow makes of a current is over before the limit takes hold of it.
+        let current = current.min(self.limit);
+        let nearest = current.clamp(expected[0].min(expected[1]), expected[0].max(expected[1]));
+        (nearest - current).abs().min(DIAGNOSIS.wrong).powi(2)
     }
 
     fn misfit(&self, speed: impl Fn(&Moment) -> f64) -> f64 {
         self.moments.iter().map(|moment| self.miss(moment, speed(moment))).sum::<f64>() + DIAGNOSIS.same
-    }
-
-    /// The best misfit with the speed changed by `change` from some moment before the alarm on.
-    fn since_best(&self, change: impl Fn(f64) -> f64) -> f64 {
-        let starts = self.moments.iter().map(|moment| moment.t).filter(|t| *t <= self.alarm_s);
-        let of = |from: f64| {
-            self.misfit(|moment| if moment.t >= from { change(moment.speed) } else { moment.speed })
-        };
-        starts.map(of).fold(f64::INFINITY, f64::min)
     }
 
     /// The encoder is right.
@@ -235,37 +259,184 @@ impl Hypotheses<'_> {
 
     /// The motor stands while a load oscillates that the encoder sees.
     fn stands(&self) -> f64 {
-        self.since_best(|_| 0.0)
+        let starts = self.moments.iter().map(|moment| moment.t).filter(|t| *t <= self.alarm_s);
+        let of = |from: f64| self.misfit(|moment| if moment.t >= from { 0.0 } else { moment.speed });
+        starts.map(of).fold(f64::INFINITY, f64::min)
     }
 
-    /// The encoder counts the other way.
-    fn flipped(&self) -> f64 {
-        self.since_best(|speed| -speed)
+    /// Whether the motor goes on as such a motor does, counted the other way from some moment before the alarm on, and its currents do not object.
+    fn is_flipped(&self, has_currents: bool) -> bool {
+        let stopped = self.as_counted().min(self.stands());
+        self.starts().into_iter().any(|start| {
+            let flipped = self.flipped(start);
+            let agree = has_currents && stopped > DIAGNOSIS.objection && flipped < DIAGNOSIS.agree * stopped;
+            let object =
+                has_currents && flipped > DIAGNOSIS.objection && stopped < DIAGNOSIS.better * flipped;
+            let (by_itself, with_currents) = DIAGNOSIS.mirror_error;
+            let most = if agree { with_currents } else { by_itself };
+            let taus = DIAGNOSIS.mirror_taus.iter();
+            !object && taus.map(|scale| self.mirrored(start, scale * self.tau_s)).any(|error| error < most)
+        })
     }
 
-    /// How far the motor is from going on as such a motor does, counted the other way from some moment before the alarm on.
-    fn likeness_of_mirror(&self) -> f64 {
-        let starts = (1..self.moments.len()).take_while(|n| self.moments[n - 1].t < self.alarm_s);
-        let tries = starts.flat_map(|n| [0.5, 1.0, 2.0].map(|scale| (n, scale * self.tau_s)));
-        tries.map(|(start, tau_s)| self.mirrored(start, tau_s)).fold(f64::INFINITY, f64::min)
+    /// When the speed jumped before the alarm, by nearly as much as it ever did: an encoder that turns round makes as large a jump as there is, and what goes up and down by less
+    /// is another motion.
+    fn starts(&self) -> Vec<usize> {
+        let last = self.moments.len().saturating_sub(1);
+        let all = (2..last).take_while(|n| self.moments[n - 1].t < self.alarm_s);
+        let jumps: Vec<(usize, f64)> =
+            all.map(|n| (n, (self.moments[n + 1].speed - self.moments[n - 2].speed).abs())).collect();
+        let largest = jumps.iter().map(|jump| jump.1).fold(0.0, f64::max);
+        jumps.iter().filter(|jump| jump.1 > DIAGNOSIS.jump * largest).map(|jump| jump.0).collect()
+    }
+
+    /// The encoder counts the other way from a moment on. The speeds on either side of the change are a mixture of those before and after it.
+    fn flipped(&self, start: usize) -> f64 {
+        let speed = |n: usize| match n {
+            n if n + 1 < start => self.moments[n].speed,
+            n if n <= start => self.moments[start - 2].speed,
+            n => -self.moments[n].speed,
+        };
+        let misses = self.moments.iter().enumerate().map(|(n, moment)| self.miss(moment, speed(n)));
+        misses.sum::<f64>() + DIAGNOSIS.same
     }
 
     /// Squared error of the mirrored speeds over the squared speeds.
     fn mirrored(&self, start: usize, tau_s: f64) -> f64 {
-        let before = &self.moments[start - 1];
+        // The speeds on either side of the change are a mixture of those before and after it.
+        let before = &self.moments[start - 2];
         let (mut speed, mut t) = (before.speed, before.t);
         let (mut error, mut height) = (0.0, 0.0);
-        for (n, moment) in self.moments[start..].iter().enumerate() {
+        for (n, moment) in self.moments[start - 1..].iter().enumerate() {
             let most = self.gain * self.limit;
             let drive = (self.gain * moment.duty - speed).clamp(-most, most);
             speed += drive * (1.0 - (-(moment.t - t) / tau_s).exp());
             t = moment.t;
-            // About the change itself a speed is a mixture.
-            if n >= 1 {
+            if n >= 2 {
                 error += (speed + moment.speed).powi(2);
                 height += speed.powi(2);
             }
         }
         error / f64::max(height, 1e-9)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::PlantModel;
+
+    /// When the alarm is, s.
+    const ALARM_S: f64 = 10.0;
+
+    /// A poll `t` s from the alarm on.
+    fn poll(t: f64, counts: f64, duty: Option<f64>, amps: Option<f64>) -> Point {
+        let t = ALARM_S + t;
+        Point { t, counts, duty: duty.map(|duty| (t, duty)), amps, volts: None, limited: false }
+    }
+
+    fn monitor(limit: Option<f64>) -> MotorMonitor {
+        let mut monitor = MotorMonitor::default();
+        (monitor.start_duty, monitor.stall_amps, monitor.drive_limit) = (0.1, Some(10.0), limit);
+        monitor.is_abrupt = true;
+        monitor
+    }
+
+    /// What it is called after the polls before the alarm, which stand by what they are called on their way, and those after it.
+    fn named(mut monitor: MotorMonitor, polls: &[Point]) -> Cause {
+        let (before, after): (Vec<Point>, Vec<Point>) = polls.iter().partition(|point| point.t < ALARM_S);
+        for point in &before {
+            let _ = monitor.see(point);
+        }
+        monitor.drive(ALARM_S, 0.0);
+        diagnose(&monitor, ALARM_S, &after)
+    }
+
+    #[test]
+    fn a_motor_that_stood_before_a_loop_had_it_is_not_held_against_the_duty_of_the_loop_before() {
+        let mut monitor = monitor(None);
+        monitor.know(&PlantModel {
+            gain_counts_per_s: 80_000.0,
+            tau_s: 0.014,
+            coulomb_duty: 0.03,
+            load_duty: 0.0,
+            drive_limit: None,
+            brake_limit: None,
+            sag: 0.0,
+        });
+        monitor.drive(ALARM_S - 5.0, 0.0);
+        monitor.release(ALARM_S - 1.0, ALARM_S - 1.0);
+        assert_eq!(monitor.see(&poll(-0.7, 0.0, Some(0.32), Some(1.0))), Ok(()));
+        monitor.drive(ALARM_S - 0.6, 0.0);
+        for n in 0..10 {
+            assert_eq!(monitor.see(&poll(-0.5 + 0.04 * f64::from(n), 0.0, None, Some(0.0))), Ok(()));
+        }
+        monitor.release(ALARM_S - 0.1, ALARM_S - 0.1);
+        let held = [poll(-0.07, 0.0, Some(-0.58), None), poll(-0.036, 0.0, Some(-0.83), Some(8.35))];
+        let off = [0.019, 0.058, 0.094].map(|t| poll(t, 0.0, None, Some(0.0)));
+        assert_eq!(named(monitor.clone(), &[&held[..], &off].concat()), Cause::Stalled);
+        // One whose encoder is dead brakes with a current.
+        let turned = [poll(-0.07, 0.0, Some(-0.58), None), poll(-0.036, 0.0, Some(-0.83), None)];
+        let braked =
+            [(0.019, 4.0), (0.058, 1.0), (0.094, 0.0)].map(|(t, amps)| poll(t, 0.0, None, Some(amps)));
+        assert_eq!(named(monitor, &[&turned[..], &braked].concat()), Cause::EncoderLost);
+    }
+
+    /// At full duty with `speed` counts/s until 55 ms before the alarm, and 1 A.
+    fn driven(speed: f64) -> Vec<Point> {
+        let at = |n: u32| -1.0 + 0.015 * f64::from(n);
+        (0..64).map(|n| poll(at(n), speed * (at(n) + 0.055), None, Some(1.0))).collect()
+    }
+
+    fn named_in_mid_drive(limit: f64, speed: f64, later: &[(f64, f64, f64)]) -> Cause {
+        let mut monitor = monitor(Some(limit));
+        monitor.drive(ALARM_S - 1.2, 1.0);
+        let later = later.iter().map(|(t, counts, amps)| poll(*t, *counts, None, Some(*amps)));
+        named(monitor, &driven(speed).into_iter().chain(later).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn an_encoder_that_turns_round_leaves_the_current_as_it_was_and_an_end_stop_does_not() {
+        // A quick motor: its time constant of 25 ms is far below the rough one of a motor that turned for a second.
+        let flipped = [
+            (-0.035, 192.0, 1.0),
+            (-0.010, -1406.0, 1.0),
+            (0.005, -2365.0, 1.0),
+            (0.025, -3279.0, 4.5),
+            (0.050, -3721.0, 1.4),
+            (0.070, -3813.0, 0.3),
+            (0.090, -3816.0, 0.0),
+            (0.130, -3816.0, 0.0),
+        ];
+        assert_eq!(named_in_mid_drive(1.16, 63_900.0, &flipped), Cause::EncoderFlipped);
+        // A gear that is thrown back by its stop, and a current limit of 7 A that is late for the blow.
+        let thrown_back = [
+            (-0.033, 5.0, 11.4),
+            (-0.023, 4.0, 12.2),
+            (-0.008, -93.0, 7.0),
+            (0.007, -139.0, 5.5),
+            (0.017, -183.0, 4.6),
+            (0.032, -231.0, 3.0),
+            (0.042, -259.0, 4.1),
+            (0.057, -304.0, 2.6),
+            (0.072, -333.0, 3.2),
+            (0.082, -363.0, 2.2),
+            (0.117, -431.0, 2.1),
+            (0.142, -469.0, 1.5),
+        ];
+        assert_eq!(named_in_mid_drive(0.74, 8_200.0, &thrown_back), Cause::Stalled);
+    }
+
+    #[test]
+    fn a_motor_that_has_only_ever_gone_against_its_duty_has_a_turned_encoder() {
+        let seen = |direction: f64| {
+            let mut monitor = monitor(None);
+            monitor.drive(ALARM_S, 1.0);
+            let at = |n: u32| 0.015 * f64::from(n);
+            (0..14)
+                .try_for_each(|n| monitor.see(&poll(at(n), direction * 2e4 * at(n).powi(2), None, Some(5.0))))
+        };
+        assert_eq!(seen(1.0), Ok(()));
+        assert_eq!(seen(-1.0), Err(Cause::EncoderFlipped));
     }
 }

@@ -61,6 +61,8 @@ thresholds! {
         command_s: f64 = 0.012,
         /// Least share of a stopping distance that the motor's own slowing takes.
         least_turn: f64 = 0.25,
+        /// Share of the current limit above which a current counts as limited.
+        near_limit: f64 = 0.95,
         /// Time for a further start, as a multiple of what the first one took, within the bounds of `start_s`.
         starts: f64 = 1.5,
     }
@@ -214,6 +216,10 @@ impl MotorMonitor {
     /// A loop has the motor: its duty is what is read. It was commanded so first at `first_s`, and answered the try of `t`.
     pub fn release(&mut self, first_s: f64, t: f64) {
         let ramp_s = 2.0 / self.slew_per_s();
+        if !self.in_loop {
+            // What a loop read before says nothing about the time since it lost the motor.
+            self.readings.clear();
+        }
         if let Some(closed_loop) = &mut self.closed_loop {
             let before = match self.duties.back() {
                 _ if self.in_loop => Before::ClosedLoop,
@@ -422,11 +428,19 @@ impl MotorMonitor {
         }
     }
 
-    /// From rest, a duty clearly above the one that it started with moves it soon.
+    /// From rest, a duty clearly above the one that it started with moves it soon, and its own way.
     fn check_start(&self, point: &Point) -> Result<(), Cause> {
-        let duty = self.duty_at(point.t).abs();
-        if self.in_loop || duty < self.start_duty + MONITOR.clearly_higher || self.tau_bounds_s.is_some() {
+        let clearly = self.start_duty + MONITOR.clearly_higher;
+        let duty = self.duty_at(point.t);
+        if self.in_loop || duty.abs() < clearly || self.tau_bounds_s.is_some() {
             return Ok(());
+        }
+        if self.never_turned()
+            && let Some(stretch) = self.stretch(MONITOR.stretches_s[1])
+            && self.duty_at(stretch.from.t) * duty.signum() >= clearly
+            && (stretch.to.counts - stretch.from.counts) * duty.signum() < -MONITOR.margin_counts
+        {
+            return Err(Cause::EncoderFlipped);
         }
         let start_s = self.start_took_s.map_or(MONITOR.start_s.0, |took| {
             (MONITOR.starts * took).clamp(MONITOR.start_s.0, MONITOR.start_s.1)
@@ -441,6 +455,11 @@ impl MotorMonitor {
         let within = self.recent.iter().skip(first).map(|old| old.counts);
         let (low, high) = within.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), c| (l.min(c), h.max(c)));
         if high - low <= 1.0 { Err(Cause::Stalled) } else { Ok(()) }
+    }
+
+    /// Whether it was never seen to go the way that its duty drives it.
+    pub(crate) fn never_turned(&self) -> bool {
+        self.gain <= 0.0
     }
 
     /// Remembers the highest speed over duty.
@@ -462,8 +481,12 @@ impl MotorMonitor {
     /// Current is what the duty has over the voltage of the turning motor.
     fn learn_emf(&mut self, point: Point, speed: f64, duty: f64) {
         let (Some(amps), Some(stall)) = (point.amps, self.stall_amps) else { return };
-        let turning = duty.abs() - amps.abs() / stall;
-        if point.limited || turning < 0.15 || speed * duty <= 0.0 {
+        let current = amps.abs() / stall;
+        let turning = duty.abs() - current;
+        // What the limit holds back has less than the duty that was given.
+        let limited =
+            point.limited || self.drive_limit.is_some_and(|limit| current > MONITOR.near_limit * limit);
+        if limited || turning < 0.15 || speed * duty <= 0.0 {
             return;
         }
         let gain = speed.abs() / turning;

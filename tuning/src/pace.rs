@@ -19,6 +19,10 @@ thresholds! {
         /// polls. Lost replies are none of them; the plants of the bench spread by 2 ms, a simulated controller beside it on a quiet computer by 0.1 ms, and with three
         /// busy programs to each processor by 12 to 16 ms.
         unsteady_s: f64 = 0.005,
+        /// Gap that may have stopped the motor, in seconds: the time-out that a run sets.
+        stopping_s: f64 = 0.2,
+        /// How long a shorter one counts against what the last polls tell, in seconds: longer than the monitor of the motor looks back.
+        remembered_s: f64 = 1.0,
     }
 }
 
@@ -47,6 +51,8 @@ pub(crate) struct Pace {
     last_s: Option<f64>,
     /// How long each gap was, s, oldest first.
     gaps_s: Vec<f64>,
+    /// When each of them ended, s.
+    ended_s: Vec<f64>,
     /// The longest gap, s, and when it ended.
     longest: Option<Late>,
     /// Time that this computer took since the last answer, and between that and the one before, s: what it took beside an answer may
@@ -64,6 +70,7 @@ impl Pace {
         if let Some(last_s) = self.last_s {
             let gap_s = now_s - last_s;
             self.gaps_s.push(gap_s);
+            self.ended_s.push(now_s);
             self.stolen_each_s.push(self.stolen_s);
             if self.longest.is_none_or(|longest| gap_s > longest.longest_s) {
                 self.longest = Some(self.gap(last_s, now_s));
@@ -101,8 +108,19 @@ impl Pace {
 
     /// The longest gap, where it was a late one.
     pub(crate) fn late_gap(&self) -> Option<Late> {
-        let limit_s = PACE.late_s.max(PACE.late_ratio * quantile(&self.gaps_s, 0.5).unwrap_or_default());
-        self.longest.filter(|longest| longest.longest_s > limit_s)
+        self.longest.filter(|longest| longest.longest_s > self.limit_s())
+    }
+
+    /// The longest gap, where a late one may have stopped the motor or ended not long before now: what the last polls tell is doubtful then.
+    pub(crate) fn late_gap_before(&self, now_s: f64) -> Option<Late> {
+        let limit_s = self.limit_s();
+        let gaps = self.gaps_s.iter().zip(&self.ended_s).filter(|gap| *gap.0 > limit_s);
+        let may_matter = |gap: (&f64, &f64)| *gap.0 >= PACE.stopping_s || now_s - gap.1 < PACE.remembered_s;
+        self.longest.filter(|_| gaps.into_iter().any(may_matter))
+    }
+
+    fn limit_s(&self) -> f64 {
+        PACE.late_s.max(PACE.late_ratio * quantile(&self.gaps_s, 0.5).unwrap_or_default())
     }
 
     /// The longest gap, where this computer took most of the time of all.
@@ -112,12 +130,7 @@ impl Pace {
         (2.0 * stolen_s >= all_s).then_some(Late { stolen_s: longest_s, ..self.longest? })
     }
 
-    /// The longest gap, where it was a late one, or where each of the exchanges, which took so long, took another time, so that nobody knows when what was read.
-    pub(crate) fn late(&self, took_s: &[f64]) -> Option<Late> {
-        self.late_gap().or_else(|| self.unsteady(took_s))
-    }
-
-    /// The longest gap or the spread, where each of the exchanges took another time.
+    /// The longest gap or the spread, where each of the exchanges, which took so long, took another time, so that nobody knows when what was read.
     pub(crate) fn unsteady(&self, took_s: &[f64]) -> Option<Late> {
         let spread = |times_s: &[f64]| {
             quantile(times_s, 0.9).zip(quantile(times_s, 0.1)).map_or(0.0, |(slow, quick)| slow - quick)
@@ -160,29 +173,44 @@ mod tests {
 
     #[test]
     fn a_gap_is_late_beyond_what_a_standstill_is_read_from_and_beyond_the_usual() {
-        assert_eq!(polled(&[10; 30]).late(&[]), None);
-        assert_eq!(polled(&[10, 10, 10, 55, 10, 10]).late(&[]), None);
-        let late = polled(&[10, 10, 10, 200, 10, 10]);
+        assert_eq!(polled(&[10; 30]).late_gap(), None);
+        assert_eq!(polled(&[10, 10, 10, 55, 10, 10]).late_gap(), None);
+        let late = polled(&[10, 10, 10, 200, 10, 10]).late_gap();
         assert!(
-            late.late(&[])
-                .is_some_and(|late| (late.longest_s - 0.2).abs() < 1e-9 && (late.at_s - 0.23).abs() < 1e-9)
+            late.is_some_and(|late| {
+                (late.longest_s - 0.2).abs() < 1e-9 && (late.at_s - 0.23).abs() < 1e-9
+            })
         );
-        assert_eq!(polled(&[100, 90, 110, 300, 100]).late(&[]), None, "a slow line");
-        assert!(polled(&[100, 90, 110, 450, 100]).late(&[]).is_some());
+        assert_eq!(polled(&[100, 90, 110, 300, 100]).late_gap(), None, "a slow line");
+        assert!(polled(&[100, 90, 110, 450, 100]).late_gap().is_some());
+    }
+
+    #[test]
+    fn a_short_gap_says_nothing_against_polls_long_after_it_and_one_that_may_have_stopped_the_motor_does() {
+        let short = polled(&[10, 10, 150, 10, 10]);
+        assert!(short.late_gap_before(0.2).is_some(), "{short:?}");
+        assert!(short.late_gap_before(1.1).is_some(), "{short:?}");
+        assert_eq!(short.late_gap_before(1.3), None);
+        assert!(polled(&[10, 10, 250, 10, 10]).late_gap_before(5.0).is_some());
+        let two = polled(&[&[10, 150][..], &[10; 110], &[90, 10]].concat()).late_gap_before(1.4);
+        assert!(
+            two.is_some_and(|late| (late.longest_s - 0.15).abs() < 1e-9),
+            "a later one, if a shorter: {two:?}"
+        );
     }
 
     #[test]
     fn exchanges_that_spread_by_half_a_poll_are_late_and_slow_ones_are_not() {
         let late = |took_ms: &dyn Fn(u32) -> u32| {
             let took_s: Vec<f64> = (0..40).map(|number| 1e-3 * f64::from(took_ms(number))).collect();
-            polled(&[25; 40]).late(&took_s).map(|late| late.longest_s)
+            polled(&[25; 40]).unsteady(&took_s).map(|late| late.longest_s)
         };
         assert_eq!(late(&|number| 15 + number % 5), None, "a slow line");
         assert_eq!(late(&|number| if number % 20 == 3 { 24 } else { 1 }), None, "one in twenty");
         let busy = late(&|number| 4 * (number % 5)).expect("a time slice of 4 ms, and up to four of them");
         assert!((busy - 0.025).abs() < 1e-9, "{busy}");
         assert!(
-            Pace::default().late(&[0.0, 0.016]).is_some_and(|late| late.longest_s > 0.015),
+            Pace::default().unsteady(&[0.0, 0.016]).is_some_and(|late| late.longest_s > 0.015),
             "no gap is reported as 0 ms"
         );
     }
@@ -193,7 +221,7 @@ mod tests {
         pace.pause();
         pace.answered(&at(5_000));
         pace.answered(&at(5_010));
-        assert_eq!(pace.late(&[]), None);
+        assert_eq!(pace.late_gap(), None);
     }
 
     #[test]
@@ -204,7 +232,7 @@ mod tests {
             pace.answered(&at(40));
             pace.stole(if before { 0.0 } else { stolen_s });
             pace.answered(&at(340));
-            pace.late(&[]).expect("0.3 s are late").whose()
+            pace.late_gap().expect("0.3 s are late").whose()
         };
         assert_eq!(late_by(0.0, false), Whose::Line);
         assert_eq!(late_by(0.01, false), Whose::Line, "a little of it");

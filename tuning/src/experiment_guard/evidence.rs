@@ -32,12 +32,22 @@ impl<L: Law> ExperimentGuard<'_, L> {
         }
         let took_s: Vec<f64> =
             self.exchanges[self.stretch_from..].iter().map(|exchange| exchange.1).collect();
-        // Answers on time that tell the same as late ones did before are to be believed: the motor was brought to rest in between.
-        let kept = self.kept_late.filter(|_| self.kept_cause != Some(cause));
-        let late = self.pace.late(&took_s).or(kept).filter(|_| cause.is_of_motion());
+        // Answers on time that tell the same as late ones did before are to be believed: the motor was brought to rest in between, and what had struck was there from
+        // the start then.
+        let seen_before = self.kept_cause.filter(|kept| *kept == cause || kept.at_the_start() == Some(cause));
+        let kept = self.kept_late.filter(|_| seen_before.is_none());
+        let now_s = self.axis.now().as_secs_f64();
+        // What struck in mid-run was told by the last polls.
+        let late = if cause.at_the_start().is_some() {
+            self.pace.late_gap_before(now_s)
+        } else {
+            self.pace.late_gap()
+        };
+        let late = late.or_else(|| self.pace.unsteady(&took_s)).or(kept).filter(|_| cause.is_of_motion());
         if let Some(late) = late {
             return self.answered_late(late);
         }
+        let cause = seen_before.unwrap_or(cause);
         if cause.is_by_current() && self.is_current_unclear() { Cause::CurrentUnclear } else { cause }
     }
 

@@ -106,6 +106,13 @@ impl<L: Law> ExperimentGuard<'_, L> {
             }
         }
         // What is not heard any more has shown nothing.
-        if heard == 0 { Cause::LinkLost } else { diagnose(&self.monitor, alarm_s, &after) }
+        if heard == 0 {
+            return Cause::LinkLost;
+        }
+        // A motor that has never turned any other way shows no change that could be diagnosed.
+        if guess == Cause::EncoderFlipped && self.monitor.never_turned() {
+            return guess;
+        }
+        diagnose(&self.monitor, alarm_s, &after)
     }
 }

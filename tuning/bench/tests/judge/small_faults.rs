@@ -4,6 +4,7 @@
 
 use brushwork_mcp_sim::motion::ControlLaw;
 use brushwork_tuning_bench::faults::rows_of;
+use brushwork_tuning_bench::motion_mind::population::specimen;
 use brushwork_tuning_bench::unit::population;
 
 const CLASSES: [&str; 12] = [
@@ -48,5 +49,25 @@ fn each_fault_in_a_trial_ends_with_the_motor_off_and_is_named() {
         assert!(row.off_in_time > 80.0, "{}: off in time {} %: {:?}", row.fault, row.off_in_time, row.misses);
         assert!(row.off_max_s < 1.5, "{}: off after {} s: {:?}", row.fault, row.off_max_s, row.misses);
         assert!(row.named > 93.0, "{}: named {} %: {:?}", row.fault, row.named, row.misses);
+    }
+}
+
+/// Motion Minds that were told wrong until currents were paired with the duties that they belong to: jams under a loop as lost encoders, encoders that turned round before the
+/// motor moved as nothing at all, and a lost encoder on a line that was late as one that never counted.
+#[test]
+fn a_motion_mind_s_faults_are_named_by_currents_of_their_own_time() {
+    let numbers: [(&str, &[usize]); 5] = [
+        ("stall_in_trial", &[1, 3, 11]),
+        ("encoder_lost", &[9, 23, 48]),
+        ("encoder_flipped", &[35, 147, 184]),
+        ("end_stop", &[94, 95]),
+        ("encoder_lost_in_trial", &[27]),
+    ];
+    for (class, numbers) in numbers {
+        let plants: Vec<_> = numbers.iter().map(|number| specimen(7, *number)).collect();
+        for row in rows_of(&plants, &[class]) {
+            println!("{row:?}");
+            assert_eq!(row.named, 100.0, "{class}: {:?}", row.misses);
+        }
     }
 }
