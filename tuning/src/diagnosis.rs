@@ -438,5 +438,13 @@ mod tests {
         };
         assert_eq!(seen(1.0), Ok(()));
         assert_eq!(seen(-1.0), Err(Cause::EncoderFlipped));
+        // One that runs on after it was driven the other way.
+        let mut monitor = monitor(None);
+        monitor.drive(ALARM_S - 0.3, -1.0);
+        monitor.drive(ALARM_S, 1.0);
+        for n in 0..7 {
+            let t = 0.015 * f64::from(n);
+            assert_eq!(monitor.see(&poll(t, -2e3 * t, None, Some(5.0))), Ok(()));
+        }
     }
 }

@@ -359,7 +359,9 @@ impl MotorMonitor {
     /// Whether the motor is off and all that is counted is slow: a load sways in the backlash of its gear.
     fn sways(&self, stretch: &Stretch) -> bool {
         let Stretch { from, to, speed_before } = stretch;
-        let later = || self.duties.iter().rev().take_while(|given| given.0 > from.t);
+        // A duty that is younger than the shortest stretch has stretches of its own later.
+        let old_s = to.t - MONITOR.stretches_s[0];
+        let later = || self.duties.iter().filter(|given| given.0 > from.t && given.0 < old_s);
         let goal = self.duties.iter().rev().find(|given| given.0 <= from.t);
         // Not only once the ramp to nought is over: a load that was braked swings back before.
         let off = !self.in_loop
@@ -435,7 +437,10 @@ impl MotorMonitor {
         if self.in_loop || duty.abs() < clearly || self.tau_bounds_s.is_some() {
             return Ok(());
         }
+        // One that was driven the other way before may still run on.
+        let is_from_rest = self.duties.iter().all(|given| given.1 * duty >= 0.0);
         if self.never_turned()
+            && is_from_rest
             && let Some(stretch) = self.stretch(MONITOR.stretches_s[1])
             && self.duty_at(stretch.from.t) * duty.signum() >= clearly
             && (stretch.to.counts - stretch.from.counts) * duty.signum() < -MONITOR.margin_counts

@@ -241,7 +241,9 @@ impl<L: Law> ExperimentGuard<'_, L> {
         let full_speed = self.monitor.full_speed;
         let took_before_s = self.exchanges.last().map_or(0.0, |exchange| exchange.1);
         let longest_s = counts_at.received.as_secs_f64() - self.epoch_s - before_s + 0.5 * took_before_s;
-        let reach = POLLING.reset_reach * full_speed * longest_s + POLLING.reset_counts;
+        // Strokes in a travel have never shown it, only what a lower duty gives.
+        let fastest = full_speed.max(self.monitor.rough_model(0.0).0);
+        let reach = POLLING.reset_reach * fastest * longest_s + POLLING.reset_counts;
         let step = point.counts - counts;
         let gathers_speed = self.monitor.tau_bounds_s.is_none()
             && matches!(self.drives.last(), Some(Drive { input: Input::Duty(duty), .. }) if duty * step > 0.0);
