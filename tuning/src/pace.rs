@@ -19,7 +19,7 @@ thresholds! {
         /// polls. Lost replies are none of them; the plants of the bench spread by 2 ms, a simulated controller beside it on a quiet computer by 0.1 ms, and with three
         /// busy programs to each processor by 12 to 16 ms.
         unsteady_s: f64 = 0.005,
-        /// Gap that may have stopped the motor, in seconds: the time-out that a run sets.
+        /// Gap that may have stopped the motor, in seconds: the time-out that a run sets where the controller has one.
         stopping_s: f64 = 0.2,
         /// How long a shorter one counts against what the last polls tell, in seconds: longer than the monitor of the motor looks back.
         remembered_s: f64 = 1.0,
@@ -114,9 +114,9 @@ impl Pace {
     /// The longest gap, where a late one may have stopped the motor or ended not long before now: what the last polls tell is doubtful then.
     pub(crate) fn late_gap_before(&self, now_s: f64) -> Option<Late> {
         let limit_s = self.limit_s();
-        let gaps = self.gaps_s.iter().zip(&self.ended_s).filter(|gap| *gap.0 > limit_s);
+        let mut gaps = self.gaps_s.iter().zip(&self.ended_s).filter(|gap| *gap.0 > limit_s);
         let may_matter = |gap: (&f64, &f64)| *gap.0 >= PACE.stopping_s || now_s - gap.1 < PACE.remembered_s;
-        self.longest.filter(|_| gaps.into_iter().any(may_matter))
+        self.longest.filter(|_| gaps.any(may_matter))
     }
 
     fn limit_s(&self) -> f64 {

@@ -213,6 +213,7 @@ impl<L: Law> ExperimentGuard<'_, L> {
         (second.t > first.t).then(|| (second.counts - first.counts) / (second.t - first.t))
     }
 
+    /// What one poll shows now; it stays among those of the run, so that a motion nobody polled is no reset later.
     fn seen_now(&mut self) -> Option<Point> {
         let sample = retried(|| self.axis.sample(Want::default())).ok()?;
         let point = self.point_of(&sample);
