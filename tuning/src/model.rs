@@ -72,12 +72,44 @@ pub struct Motion {
     pub position: f64,
 }
 
+/// An exponential and what it was asked for last: a loop asks for that of the same step again and again, and it is a sixth of all that a step takes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Decay {
+    exponent: f64,
+    value: f64,
+}
+
+impl Default for Decay {
+    fn default() -> Self {
+        Self { exponent: 0.0, value: 1.0 }
+    }
+}
+
+impl Decay {
+    /// `exp(exponent)`.
+    pub(crate) fn of(&mut self, exponent: f64) -> f64 {
+        if exponent != self.exponent {
+            *self = Self { exponent, value: exponent.exp() };
+        }
+        self.value
+    }
+}
+
 impl PlantModel {
     /// Moves on by `dt` at a constant duty. Exact but for the current limit, which is taken as it is at the start.
     pub fn step(&self, motion: &mut Motion, duty: f64, dt: f64) {
+        self.step_on(motion, duty, dt, &mut Decay::default());
+    }
+
+    /// The same, with the exponential of the step before.
+    pub(crate) fn step_on(&self, motion: &mut Motion, duty: f64, dt: f64, decay_of: &mut Decay) {
         let sag = self.sag * duty * duty;
         let net = duty * (1.0 - sag) - self.load_duty;
-        let (gain, tau_s) = (self.gain_counts_per_s / (1.0 - sag), self.tau_s / (1.0 - sag));
+        let (gain, tau_s) = if sag == 0.0 {
+            (self.gain_counts_per_s, self.tau_s)
+        } else {
+            (self.gain_counts_per_s / (1.0 - sag), self.tau_s / (1.0 - sag))
+        };
         let mut left = dt;
         // At most: slow down to zero, then turn round or stay.
         for _ in 0..2 {
@@ -85,21 +117,21 @@ impl PlantModel {
             if motion.speed == 0.0 && net.abs() <= self.coulomb_duty {
                 return;
             }
-            let eaten = MODEL.viscous_share * motion.speed / self.gain_counts_per_s;
-            let push = duty * (1.0 - sag) - motion.speed / gain + eaten;
-            if let Some(limit) = self.push_limit(duty, motion.speed)
-                && push.abs() > limit
-            {
-                // The winding gives a constant torque: a slope, not an approach.
-                let net = limit * push.signum() - eaten - self.load_duty - self.coulomb_duty * direction;
-                match self.slide(motion, self.gain_counts_per_s * net / self.tau_s, left) {
-                    Some(used) => left -= used,
-                    None => return,
+            if let Some(limit) = self.push_limit(duty, motion.speed) {
+                let eaten = MODEL.viscous_share * motion.speed / self.gain_counts_per_s;
+                let push = duty * (1.0 - sag) - motion.speed / gain + eaten;
+                if push.abs() > limit {
+                    // The winding gives a constant torque: a slope, not an approach.
+                    let net = limit * push.signum() - eaten - self.load_duty - self.coulomb_duty * direction;
+                    match self.slide(motion, self.gain_counts_per_s * net / self.tau_s, left) {
+                        Some(used) => left -= used,
+                        None => return,
+                    }
+                    continue;
                 }
-                continue;
             }
             let goal = gain * (net - self.coulomb_duty * direction);
-            let decay = (-left / tau_s).exp();
+            let decay = decay_of.of(-left / tau_s);
             let end = goal + (motion.speed - goal) * decay;
             if motion.speed == 0.0 || end * motion.speed > 0.0 {
                 motion.position += goal * left + (motion.speed - goal) * tau_s * (1.0 - decay);

@@ -49,18 +49,23 @@ impl Late {
 pub(crate) struct Pace {
     /// When the last answer was complete, s; `None` after a pause of the run itself.
     last_s: Option<f64>,
-    /// How long each gap was, s, oldest first.
-    gaps_s: Vec<f64>,
-    /// When each of them ended, s.
-    ended_s: Vec<f64>,
+    /// The gaps so far, oldest first.
+    gaps: Vec<Gap>,
     /// The longest gap, s, and when it ended.
     longest: Option<Late>,
     /// Time that this computer took since the last answer, and between that and the one before, s: what it took beside an answer may
     /// have been before or after its time.
     stolen_s: f64,
     stolen_before_s: f64,
-    /// The same of each gap.
-    stolen_each_s: Vec<f64>,
+}
+
+/// The time between two answers.
+#[derive(Clone, Copy, Debug)]
+struct Gap {
+    long_s: f64,
+    ended_s: f64,
+    /// Time that this computer took after the answer before it.
+    stolen_s: f64,
 }
 
 impl Pace {
@@ -69,9 +74,7 @@ impl Pace {
         let now_s = exchange.received.as_secs_f64();
         if let Some(last_s) = self.last_s {
             let gap_s = now_s - last_s;
-            self.gaps_s.push(gap_s);
-            self.ended_s.push(now_s);
-            self.stolen_each_s.push(self.stolen_s);
+            self.gaps.push(Gap { long_s: gap_s, ended_s: now_s, stolen_s: self.stolen_s });
             if self.longest.is_none_or(|longest| gap_s > longest.longest_s) {
                 self.longest = Some(self.gap(last_s, now_s));
             }
@@ -114,18 +117,23 @@ impl Pace {
     /// The longest gap, where a late one may have stopped the motor or ended not long before now: what the last polls tell is doubtful then.
     pub(crate) fn late_gap_before(&self, now_s: f64) -> Option<Late> {
         let limit_s = self.limit_s();
-        let mut gaps = self.gaps_s.iter().zip(&self.ended_s).filter(|gap| *gap.0 > limit_s);
-        let may_matter = |gap: (&f64, &f64)| *gap.0 >= PACE.stopping_s || now_s - gap.1 < PACE.remembered_s;
+        let mut gaps = self.gaps.iter().filter(|gap| gap.long_s > limit_s);
+        let may_matter = |gap: &Gap| gap.long_s >= PACE.stopping_s || now_s - gap.ended_s < PACE.remembered_s;
         self.longest.filter(|_| gaps.any(may_matter))
     }
 
     fn limit_s(&self) -> f64 {
-        PACE.late_s.max(PACE.late_ratio * quantile(&self.gaps_s, 0.5).unwrap_or_default())
+        PACE.late_s.max(PACE.late_ratio * quantile(&self.of_gaps(|gap| gap.long_s), 0.5).unwrap_or_default())
+    }
+
+    fn of_gaps(&self, figure: fn(&Gap) -> f64) -> Vec<f64> {
+        self.gaps.iter().map(figure).collect()
     }
 
     /// The longest gap, where this computer took most of the time of all.
     pub(crate) fn computer_late(&self) -> Option<Late> {
-        let (stolen_s, all_s) = (self.stolen_each_s.iter().sum::<f64>(), self.gaps_s.iter().sum::<f64>());
+        let sum = |figure| self.of_gaps(figure).iter().sum::<f64>();
+        let (stolen_s, all_s) = (sum(|gap| gap.stolen_s), sum(|gap| gap.long_s));
         let longest_s = self.longest?.longest_s;
         (2.0 * stolen_s >= all_s).then_some(Late { stolen_s: longest_s, ..self.longest? })
     }
@@ -139,7 +147,8 @@ impl Pace {
         let longest = self.longest.unwrap_or_default();
         let longest_s = longest.longest_s.max(spread_s);
         // Whose the spread is, is whose it is in most of the exchanges, not in the longest gap.
-        let stolen_s = longest_s * (spread(&self.stolen_each_s) / spread_s.max(f64::MIN_POSITIVE)).min(1.0);
+        let stolen_s = spread(&self.of_gaps(|gap| gap.stolen_s)) / spread_s.max(f64::MIN_POSITIVE);
+        let stolen_s = longest_s * stolen_s.min(1.0);
         (spread_s > PACE.unsteady_s).then_some(Late { longest_s, stolen_s, ..longest })
     }
 }

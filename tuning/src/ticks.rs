@@ -3,7 +3,7 @@
 
 use crate::duty_limiter::{DutyLimit, Limiter, LimiterState};
 use crate::law::{Law, Seen};
-use crate::model::{Gains, Lag, Motion, PlantModel};
+use crate::model::{Decay, Gains, Lag, Motion, PlantModel};
 use crate::score::{LOAD_STEP_DUTY, Score, VELOCITY_STEP, horizon_s, position_step};
 pub use crate::setpoint::Setpoint;
 
@@ -16,16 +16,24 @@ pub struct TickLoop<L: Law> {
     /// The motor.
     pub plant: PlantModel,
     law: L,
-    lag: Lag,
     gains: Gains,
     qpps: f64,
+    tick_s: f64,
+    /// What the filter lets through of a change in a tick, as a share.
+    share: f64,
     /// Where it is.
     pub motion: Motion,
     last_count: f64,
     filtered: f64,
     state: L::Loop,
     limit: LimiterState,
+    /// The duties of the last ticks, as a ring, and where the newest is.
     queue: [f64; QUEUE],
+    newest: usize,
+    /// The delay as whole ticks and what is left of one.
+    delay: (usize, f64),
+    decay: Decay,
+    winding_decay: Decay,
     /// Time constant of the winding, s, where it is told from the delay.
     pub winding_s: f64,
     /// What the winding makes of the duty.
@@ -39,18 +47,25 @@ impl<L: Law> TickLoop<L> {
     /// A loop at rest.
     #[must_use]
     pub fn new(plant: PlantModel, law: L, lag: Lag, gains: Gains, qpps: f64) -> Self {
+        let whole = (lag.delay_ticks.floor() as usize).min(QUEUE - 2);
+        let tick_s = law.tick_s();
         Self {
             plant,
             law,
-            lag,
             gains,
             qpps,
+            tick_s,
+            share: tick_s / (lag.filter_s + tick_s),
             motion: Motion::default(),
             last_count: 0.0,
             filtered: 0.0,
             state: L::Loop::default(),
             limit: LimiterState::default(),
             queue: [0.0; QUEUE],
+            newest: 0,
+            delay: (whole, lag.delay_ticks - whole as f64),
+            decay: Decay::default(),
+            winding_decay: Decay::default(),
             winding_s: 0.0,
             torque_duty: 0.0,
             smooth: false,
@@ -67,7 +82,7 @@ impl<L: Law> TickLoop<L> {
     /// Puts a velocity loop into the steady state of a speed.
     pub fn start_steady(&mut self, speed: f64) {
         self.motion = Motion { speed, position: 0.0 };
-        self.last_count = (-speed * self.law.tick_s()).floor();
+        self.last_count = (-speed * self.tick_s).floor();
         self.filtered = speed;
         let plant = &self.plant;
         let duty = speed / plant.gain_counts_per_s + plant.coulomb_duty * speed.signum() + plant.load_duty;
@@ -79,10 +94,9 @@ impl<L: Law> TickLoop<L> {
 
     /// One tick: measures, computes, moves on. Returns the duty that the bridge held.
     pub fn tick(&mut self, setpoint: Setpoint, load_duty: f64) -> f64 {
-        let tick_s = self.law.tick_s();
+        let tick_s = self.tick_s;
         let count = if self.smooth { self.motion.position } else { self.motion.position.floor() };
-        let share = tick_s / (self.lag.filter_s + tick_s);
-        self.filtered += share * ((count - self.last_count) / tick_s - self.filtered);
+        self.filtered += self.share * ((count - self.last_count) / tick_s - self.filtered);
         self.last_count = count;
         let seen = Seen {
             plant: &self.plant,
@@ -93,11 +107,11 @@ impl<L: Law> TickLoop<L> {
             is_smooth: self.smooth,
         };
         let duty = self.law.tick(&mut self.state, (&self.gains, self.qpps), setpoint, &seen);
-        self.queue.rotate_right(1);
-        self.queue[0] = duty;
-        let whole = (self.lag.delay_ticks.floor() as usize).min(QUEUE - 2);
-        let part = self.lag.delay_ticks - whole as f64;
-        self.duty = self.queue[whole] * (1.0 - part) + self.queue[whole + 1] * part;
+        self.newest = (self.newest + QUEUE - 1) % QUEUE;
+        self.queue[self.newest] = duty;
+        let (whole, part) = self.delay;
+        let ago = |ticks: usize| self.queue[(self.newest + ticks) % QUEUE];
+        self.duty = ago(whole) * (1.0 - part) + ago(whole + 1) * part;
         let mut plant = self.plant;
         plant.load_duty += load_duty;
         let acting = self.through_winding();
@@ -105,21 +119,21 @@ impl<L: Law> TickLoop<L> {
             self.step_limited(limit, &plant, acting);
         } else if plant.drive_limit.is_some() {
             for _ in 0..2 {
-                plant.step(&mut self.motion, acting, 0.5 * tick_s);
+                plant.step_on(&mut self.motion, acting, 0.5 * tick_s, &mut self.decay);
             }
         } else {
-            plant.step(&mut self.motion, acting, tick_s);
+            plant.step_on(&mut self.motion, acting, tick_s, &mut self.decay);
         }
         self.duty
     }
 
     /// The mean over a tick of what the winding lets act.
     fn through_winding(&mut self) -> f64 {
-        let tick_s = self.law.tick_s();
+        let tick_s = self.tick_s;
         if self.winding_s <= 0.01 * tick_s {
             return self.duty;
         }
-        let decay = (-tick_s / self.winding_s).exp();
+        let decay = self.winding_decay.of(-tick_s / self.winding_s);
         let before = self.torque_duty - self.duty;
         self.torque_duty = self.duty + before * decay;
         self.duty + before * (1.0 - decay) * self.winding_s / tick_s
@@ -127,9 +141,10 @@ impl<L: Law> TickLoop<L> {
 
     /// A tick under a limiter that follows the current with the duty.
     fn step_limited(&mut self, limit: DutyLimit, plant: &PlantModel, acting: f64) {
-        let tick_s = self.law.tick_s();
+        let tick_s = self.tick_s;
         let before = self.motion.speed;
-        PlantModel { drive_limit: None, ..*plant }.step(&mut self.motion, acting, tick_s);
+        let free = PlantModel { drive_limit: None, ..*plant };
+        free.step_on(&mut self.motion, acting, tick_s, &mut self.decay);
         if let Some(limiter) = Limiter::new(limit, plant.drive_limit) {
             let emf = 0.5 * (before + self.motion.speed) / plant.gain_counts_per_s;
             limiter.see(&mut self.limit, acting - emf, tick_s);

@@ -87,10 +87,12 @@ impl<L: Law> ExperimentGuard<'_, L> {
             // From rest a motor needs no longer distance to stop than it had to start, at the duty that it had.
             None => {
                 let started = TRAVEL.started_share * self.distance_since_drive(point);
+                // What went the other way since is no way that it took to start in this one.
+                let runs_on = (started * speed.signum()).max(0.0) * speed.signum();
                 let now_s = self.now_s();
                 let least_duty = self.monitor.start_duty + TRAVEL.least_push;
                 let duty = self.monitor.duty_at(now_s).abs().max(least_duty).min(most_duty);
-                (started + speed * TRAVEL.turning_s.max(self.monitor.stopping_s), (duty, started.abs()))
+                (runs_on + speed * TRAVEL.turning_s.max(self.monitor.stopping_s), (duty, started.abs()))
             }
         };
         // No push is shorter than a command takes.

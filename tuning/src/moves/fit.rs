@@ -137,7 +137,7 @@ pub(super) fn fit_moves<L: Law>(
 }
 
 fn minimised<L: Law>(stretches: &[Stretch<L>], law: L, q: Vector6<f64>) -> Option<(f64, Problem<'_, L>)> {
-    let problem = Problem { stretches, law, q };
+    let problem = Problem::new(stretches, law, q);
     let (problem, report) = LevenbergMarquardt::new()
         .with_patience(4)
         .with_ftol(MOVES_FIT.enough)
@@ -166,9 +166,17 @@ struct Problem<'a, L: Law> {
     stretches: &'a [Stretch<L>],
     law: L,
     q: Vector6<f64>,
+    /// The misfits there; a fit asks for them and then for their slopes.
+    here: DVector<f64>,
 }
 
-impl<L: Law> Problem<'_, L> {
+impl<'a, L: Law> Problem<'a, L> {
+    fn new(stretches: &'a [Stretch<L>], law: L, q: Vector6<f64>) -> Self {
+        let mut problem = Self { stretches, law, q, here: DVector::zeros(0) };
+        problem.here = problem.misfits(&q);
+        problem
+    }
+
     fn misfits(&self, q: &Vector6<f64>) -> DVector<f64> {
         let (model, offset_s, lag_s) = parts(q, self.law.rate_hz());
         let lag = Lag { filter_s: 0.0, delay_ticks: lag_s * f64::from(self.law.rate_hz()) };
@@ -186,12 +194,11 @@ impl<L: Law> Problem<'_, L> {
     }
 
     fn slopes(&self) -> DMatrix<f64> {
-        let here = self.misfits(&self.q);
         let columns: Vec<DVector<f64>> = (0..UNITS.len())
             .map(|n| {
                 let mut up = self.q;
                 up[n] += MOVES_FIT.slope_step;
-                (self.misfits(&up) - &here) / MOVES_FIT.slope_step
+                (self.misfits(&up) - &self.here) / MOVES_FIT.slope_step
             })
             .collect();
         DMatrix::from_columns(&columns)
@@ -213,6 +220,7 @@ impl<L: Law> LeastSquaresProblem<f64, Dyn, U6> for Problem<'_, L> {
 
     fn set_params(&mut self, q: &Vector6<f64>) {
         self.q.copy_from(q);
+        self.here = self.misfits(q);
     }
 
     fn params(&self) -> Vector6<f64> {
@@ -220,7 +228,7 @@ impl<L: Law> LeastSquaresProblem<f64, Dyn, U6> for Problem<'_, L> {
     }
 
     fn residuals(&self) -> Option<DVector<f64>> {
-        Some(self.misfits(&self.q))
+        Some(self.here.clone())
     }
 
     fn jacobian(&self) -> Option<OMatrix<f64, Dyn, U6>> {

@@ -11,6 +11,7 @@ use brushwork_plant::presets;
 use brushwork_plant::world::WorldAction;
 use brushwork_values::Motor;
 use egui::{Key, Modifiers, ViewportCommand, ViewportEvent, ViewportId};
+use std::sync::LazyLock;
 use std::time::Duration;
 
 /// The user's time-out of the port and what the run makes of it, ms.
@@ -101,8 +102,15 @@ fn finish(bench: &mut Bench) {
     bench.pass_ms(1500);
 }
 
+/// The stages of each work, which are the same in every test.
+static STAGES: LazyLock<[Vec<(String, u64)>; 3]> = LazyLock::new(|| WORKS.each_ref().map(stages_of));
+
+fn stages() -> impl Iterator<Item = (&'static Work, &'static [(String, u64)])> {
+    WORKS.iter().zip(STAGES.iter().map(Vec::as_slice))
+}
+
 /// The stages of a run, with how long after its begin the middle of each is, in frames of 100 ms.
-fn stages(work: &Work) -> Vec<(String, u64)> {
+fn stages_of(work: &Work) -> Vec<(String, u64)> {
     let mut bench = (work.begin)();
     let mut seen: Vec<(String, u64, u64)> = Vec::new();
     let mut frame = 0;
@@ -121,11 +129,10 @@ fn stages(work: &Work) -> Vec<(String, u64)> {
 /// Ends each work in the middle of each of its stages.
 #[track_caller]
 fn at_each_stage(how: &str, end: impl Fn(&mut Bench), after: impl Fn(&mut Bench)) {
-    for work in &WORKS {
-        let stages = stages(work);
+    for (work, stages) in stages() {
         assert!(stages.len() >= 3, "{}: {stages:?}", work.name);
         let just_begun = ("just begun".to_owned(), 0);
-        for (stage, frames) in [just_begun].iter().chain(&stages) {
+        for (stage, frames) in [just_begun].iter().chain(stages) {
             let mut bench = (work.begin)();
             let before = fresh();
             bench.pass_ms(100 * frames);
@@ -252,8 +259,8 @@ fn asked_for(bench: &Bench, wanted: &ViewportCommand) -> bool {
 
 #[test]
 fn the_window_closes_once_everything_is_put_back() {
-    for work in &WORKS {
-        for (stage, frames) in stages(work) {
+    for (work, stages) in stages() {
+        for (stage, frames) in stages {
             let mut bench = (work.begin)();
             bench.pass_ms(100 * frames);
             let place = format!("{} at {stage:?}", work.name);

@@ -55,6 +55,8 @@ pub struct SuprMotrLoop {
     /// Where it is to go; `None` before the first command.
     goal: Option<f64>,
     from: f64,
+    speed: f64,
+    profile: Profile,
     elapsed_s: f64,
     /// Counts x s.
     sum: f64,
@@ -75,15 +77,19 @@ impl SuprMotrLoop {
             Setpoint::Position(goal, speed) => (goal, speed),
             Setpoint::Speed(_) => (self.goal.unwrap_or(count), 0.0),
         };
-        if self.goal != Some(goal) {
+        let is_other = self.goal != Some(goal);
+        if is_other {
             self.from = self.goal.unwrap_or(count);
             (self.goal, self.elapsed_s) = (Some(goal), 0.0);
         }
+        if is_other || speed != self.speed {
+            let MovePace { velocity, acceleration } = quickest();
+            let velocity = speed.min(f64::from(velocity));
+            self.speed = speed;
+            self.profile = Profile::new(goal - self.from, velocity, f64::from(acceleration));
+        }
         self.elapsed_s += tick_s;
-        let MovePace { velocity, acceleration } = quickest();
-        let velocity = speed.min(f64::from(velocity));
-        let profile = Profile { distance: goal - self.from, velocity, acceleration: f64::from(acceleration) };
-        self.from + profile.at(self.elapsed_s)
+        self.from + self.profile.at(self.elapsed_s)
     }
 }
 
