@@ -40,7 +40,7 @@ pub struct FaultRow {
     pub off_in_time: f64,
     /// Named right, %.
     pub named: f64,
-    /// From the fault to the motor off, median, s.
+    /// From the fault, or from when the motor was next driven, to the motor off, median, s.
     pub off_median_s: f64,
     /// The longest, s.
     pub off_max_s: f64,
@@ -63,7 +63,7 @@ pub struct Miss {
     pub kind: Kind,
     /// When the fault struck, s from the start of the run.
     pub at_s: f64,
-    /// From the fault to the motor off, s.
+    /// From the fault, or from when the motor was next driven, to the motor off, s.
     pub off_s: f64,
     /// What the run ended with.
     pub cause: Option<Cause>,
@@ -302,11 +302,15 @@ fn run<U: Unit>(class: &Class, subject: &Subject<U>) -> Run {
         };
         from = hit;
     }
-    if matches!(class.fault, Fault::InTrial(_)) {
-        // A loop at rest shows nothing; the clock runs from when it next drives the motor.
-        from = seen.driven_after.unwrap_or(from).max(from);
-    }
-    let off_s = seen.last_driven.saturating_sub(from).as_secs_f64();
+    // A run that lost replies is begun anew, and sees the fault once more: each drive has the deadline for itself.
+    let off_s = match class.fault {
+        Fault::During(_) => seen.drive.longest,
+        Fault::InTrial(_) => seen.clear_drive.longest,
+        Fault::Before(_) | Fault::LinkDrop | Fault::EndStop | Fault::Window => {
+            seen.last_driven.saturating_sub(from)
+        }
+    };
+    let off_s = off_s.as_secs_f64();
     let named = report.causes.first().is_some_and(|cause| class.causes.contains(cause));
     Run {
         plant: (specimen.number, specimen.kind),

@@ -9,6 +9,8 @@ use std::time::Duration;
 
 /// A duty that moves each of the motors.
 const CLEAR_DUTY: f64 = 0.25;
+/// Pause by which one drive is told from the next: longer than a loop that passes through nought takes, shorter than a stretch of a run that is begun anew.
+const OFF: Duration = Duration::from_millis(200);
 /// Spread of the latency about its mean.
 const LATENCY_SPREAD: (f64, f64) = (0.8, 1.6);
 
@@ -31,12 +33,38 @@ pub struct Truth {
     pub peak_amps: f64,
     /// When the bridge last drove the motor.
     pub last_driven: Duration,
-    /// When the bridge first drove the motor clearly after the last thing that happened to the machine.
-    pub driven_after: Option<Duration>,
+    /// The longest drive since the last thing that happened to the machine.
+    pub drive: Drive,
+    /// The same from when the duty was one that moves each of the motors: a loop at rest shows nothing.
+    pub clear_drive: Drive,
     /// Farthest the motor shaft was from where it started, rad.
     pub farthest_radians: f64,
     /// When the output shaft first came to where an end stop is.
     pub stop_hit_at: Option<Duration>,
+}
+
+/// The longest that a bridge drove its motor without a pause.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Drive {
+    /// When the present one began.
+    since: Option<Duration>,
+    /// The longest.
+    pub longest: Duration,
+}
+
+impl Drive {
+    /// Looks at a bridge that drove last then, and whether what it does now begins a drive.
+    fn see(&mut self, now: Duration, last_driven: Duration, begins: bool) {
+        if now > last_driven + OFF {
+            self.since = None;
+        }
+        if begins {
+            self.since.get_or_insert(now);
+        }
+        if let Some(since) = self.since {
+            self.longest = self.longest.max(last_driven.saturating_sub(since));
+        }
+    }
 }
 
 /// A link to a simulated controller.
@@ -138,7 +166,7 @@ impl<M: Bench> SimulatedLine<M> {
             while self.events.last().is_some_and(|event| event.at <= self.now) {
                 if let Some(event) = self.events.pop() {
                     self.unit.undergo(&event.action);
-                    self.truth.driven_after = None;
+                    (self.truth.drive, self.truth.clear_drive) = (Drive::default(), Drive::default());
                 }
             }
             self.note();
@@ -152,12 +180,13 @@ impl<M: Bench> SimulatedLine<M> {
         // A current limit that softens the braking gives a duty too, but against the current: that drives nothing.
         // Without any current, as with a lead off, the duty alone counts.
         let (duty, amps) = (axis.output.duty(), axis.truth.amps);
-        if duty * amps > 0.0 || (duty != 0.0 && amps == 0.0) {
+        let drives = duty * amps > 0.0 || (duty != 0.0 && amps == 0.0);
+        if drives {
             self.truth.last_driven = self.now;
         }
-        if duty.abs() > CLEAR_DUTY && self.truth.driven_after.is_none() {
-            self.truth.driven_after = Some(self.now);
-        }
+        let last_driven = self.truth.last_driven;
+        self.truth.drive.see(self.now, last_driven, drives);
+        self.truth.clear_drive.see(self.now, last_driven, drives && duty.abs() > CLEAR_DUTY);
         self.truth.farthest_radians = self.truth.farthest_radians.max(axis.truth.motor_radians.abs());
         if let Some(stop) = self.end_stop_radians
             && axis.truth.load_radians.abs() >= 0.999 * stop
@@ -235,5 +264,29 @@ impl<M: Bench> SimulatedLine<M> {
         self.advance(time + late);
         self.stall();
         if self.is_stopped() { Err(AxisError::Stopped) } else { Ok(()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The longest drive that looks every 10 ms see, ms, of a bridge that drives from then to then.
+    fn longest_ms(drives: &[(u64, u64)]) -> u128 {
+        let (mut drive, mut last_driven) = (Drive::default(), Duration::ZERO);
+        for now_ms in (10..2_000).step_by(10) {
+            let now = Duration::from_millis(now_ms);
+            let is_driven = drives.iter().any(|(from, to)| (*from..=*to).contains(&now_ms));
+            last_driven = if is_driven { now } else { last_driven };
+            drive.see(now, last_driven, is_driven);
+        }
+        drive.longest.as_millis()
+    }
+
+    #[test]
+    fn a_pause_of_a_loop_is_part_of_a_drive_and_a_stretch_begun_anew_is_a_drive_of_its_own() {
+        assert_eq!(longest_ms(&[(100, 250), (700, 800)]), 150);
+        assert_eq!(longest_ms(&[(100, 250), (400, 800)]), 700, "a loop passed through nought");
+        assert_eq!(longest_ms(&[]), 0);
     }
 }

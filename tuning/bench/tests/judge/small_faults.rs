@@ -37,7 +37,7 @@ fn each_fault_ends_with_the_motor_off_in_time_and_is_named() {
     }
 }
 
-/// While a loop has the motor. The clock runs from when the loop next drives the motor; between two polls a loop does more than is read.
+/// While a loop has the motor. The clock runs from when the loop next drives the motor clearly; between two polls a loop does more than is read.
 #[test]
 fn each_fault_in_a_trial_ends_with_the_motor_off_and_is_named() {
     let classes =
@@ -46,7 +46,7 @@ fn each_fault_in_a_trial_ends_with_the_motor_off_and_is_named() {
     assert_eq!(rows.len(), classes.len());
     for row in rows {
         println!("{row:?}");
-        assert!(row.off_in_time > 80.0, "{}: off in time {} %: {:?}", row.fault, row.off_in_time, row.misses);
+        assert!(row.off_in_time > 93.0, "{}: off in time {} %: {:?}", row.fault, row.off_in_time, row.misses);
         assert!(row.off_max_s < 1.5, "{}: off after {} s: {:?}", row.fault, row.off_max_s, row.misses);
         assert!(row.named > 93.0, "{}: named {} %: {:?}", row.fault, row.named, row.misses);
     }
@@ -69,5 +69,16 @@ fn a_motion_mind_s_faults_are_named_by_currents_of_their_own_time() {
             println!("{row:?}");
             assert_eq!(row.named, 100.0, "{class}: {:?}", row.misses);
         }
+    }
+}
+
+/// Motion Minds that left a window of a tenth of a second of full speed while a motor at its end was driven back until a poll showed it over.
+#[test]
+fn a_motor_driven_back_from_an_end_of_its_travel_does_not_leave_it_at_the_other() {
+    let numbers = [3, 8, 20, 30, 47, 48, 75, 103];
+    let plants: Vec<_> = numbers.iter().map(|number| specimen(7, *number)).collect();
+    for row in rows_of(&plants, &["travel_window"]) {
+        println!("{row:?}");
+        assert_eq!(row.off_in_time, 100.0, "{:?}", row.misses);
     }
 }
