@@ -57,6 +57,8 @@ thresholds! {
         tau_spread: (f64, f64) = (0.3, 1.6),
         /// Speed, as a share of that at full duty, below which a load may sway while the motor is off, and below which cogs make a turning motor uneven.
         swaying: f64 = 0.08,
+        /// The same of a load that goes on the way that a motor went which was braked, as a share of its speed then: it takes the motor along when it has crossed its backlash.
+        carried: f64 = 0.5,
         /// Time from a poll to the command that it leads to, in seconds.
         command_s: f64 = 0.012,
         /// Least share of a stopping distance that the motor's own slowing takes.
@@ -367,8 +369,19 @@ impl MotorMonitor {
         let off = !self.in_loop
             && self.loop_until_s < from.t - MONITOR.speed_s
             && goal.into_iter().chain(later()).all(|given| given.1 == 0.0);
-        let slow = MONITOR.swaying * self.gain;
-        off && speed_before.abs() < slow && (to.counts - from.counts).abs() < slow * (to.t - from.t)
+        let moved = to.counts - from.counts;
+        let carried = MONITOR.carried * (self.speed_when_off() * moved.signum()).max(0.0);
+        let slow = carried.max(MONITOR.swaying * self.gain);
+        off && speed_before.abs() < slow && moved.abs() < slow * (to.t - from.t)
+    }
+
+    /// The speed that it had when its duty was taken away, counts/s; 0 where nobody remembers.
+    fn speed_when_off(&self) -> f64 {
+        let off = self.duties.iter().rev().take_while(|given| given.1 == 0.0).last();
+        let earlier = |t: f64| self.recent.iter().rev().find(move |old| old.t <= t);
+        let at_off = off.and_then(|off| earlier(off.0));
+        let before = at_off.and_then(|at_off| earlier(at_off.t - MONITOR.speed_s));
+        at_off.zip(before).map_or(0.0, |(now, before)| (now.counts - before.counts) / (now.t - before.t))
     }
 
     /// Whether nothing slows the motor down: its duty has stayed, and it was on its way there.
@@ -673,5 +686,39 @@ mod tests {
     fn a_braked_load_that_swings_back_while_the_duty_still_ramps_down_is_no_fault() {
         assert_eq!(seen_swinging(1.0), Ok(()));
         assert_eq!(seen_swinging(40.0), Err(Cause::Stalled), "no load swings back that fast");
+    }
+
+    /// A motor at 1,020 counts/s of 3,800 is braked and stands; then its load, which has crossed its backlash, takes it along at so many counts/s.
+    fn seen_taken_along(counts_per_s: f64) -> Result<(), Cause> {
+        let mut monitor = MotorMonitor { start_duty: 0.04, ..MotorMonitor::default() };
+        monitor.know(&PlantModel {
+            gain_counts_per_s: 3_900.0,
+            tau_s: 0.11,
+            coulomb_duty: 0.03,
+            load_duty: 0.0,
+            drive_limit: None,
+            brake_limit: None,
+            sag: 0.0,
+        });
+        monitor.release(0.0, 0.0);
+        let mut counts = 0.0;
+        let braked = [560.0, 310.0, 170.0, 90.0, 0.0, 0.0, 0.0, 0.0];
+        (0..32_usize).try_for_each(|n| {
+            let t = 0.01 * n as f64;
+            if n == 16 {
+                monitor.drive(t - 0.002, 0.0);
+            }
+            let speed = if n < 16 { 1_020.0 } else { braked.get(n - 16).copied().unwrap_or(counts_per_s) };
+            counts += 0.01 * speed;
+            let duty = (n < 16).then_some((t, 0.3));
+            monitor.see(&Point { t, counts, duty, amps: None, volts: None, limited: false })
+        })
+    }
+
+    #[test]
+    fn a_load_that_takes_a_braked_motor_along_slower_than_it_was_is_no_fault() {
+        assert_eq!(seen_taken_along(390.0), Ok(()));
+        assert_eq!(seen_taken_along(800.0), Err(Cause::Stalled), "nothing has braked it");
+        assert_eq!(seen_taken_along(-390.0), Err(Cause::Stalled), "the way back is no load that goes on");
     }
 }
