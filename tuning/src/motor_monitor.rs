@@ -57,7 +57,8 @@ thresholds! {
         tau_spread: (f64, f64) = (0.3, 1.6),
         /// Speed, as a share of that at full duty, below which a load may sway while the motor is off, and below which cogs make a turning motor uneven.
         swaying: f64 = 0.08,
-        /// The same of a load that goes on the way that a motor went which was braked, as a share of its speed then: it takes the motor along when it has crossed its backlash.
+        /// The same of a motor that goes on the way it went when it was braked, as a share of its speed then: its load may take it along. 0.38 was seen (steering gear,
+        /// Motion Mind's plant 166 of seed 7).
         carried: f64 = 0.5,
         /// Time from a poll to the command that it leads to, in seconds.
         command_s: f64 = 0.012,
@@ -358,7 +359,7 @@ impl MotorMonitor {
         Ok(())
     }
 
-    /// Whether the motor is off and all that is counted is slow: a load sways in the backlash of its gear.
+    /// Whether the motor is off and all that is counted is slow: a load sways in the backlash of its gear, or takes the motor along a little.
     fn sways(&self, stretch: &Stretch) -> bool {
         let Stretch { from, to, speed_before } = stretch;
         // A duty that is younger than the shortest stretch has stretches of its own later.
@@ -653,11 +654,11 @@ impl MotorMonitor {
 mod tests {
     use super::*;
 
-    /// A motor braked at 0.31 since 0.95 s and turned off at 0.99 s, whose load swings back by `scale` times 29 counts when it should stand.
-    fn seen_swinging(scale: f64) -> Result<(), Cause> {
-        let mut monitor = MotorMonitor { start_duty: 0.06, ..MotorMonitor::default() };
+    /// The monitor of a motor that starts at a duty and was found to have a gain.
+    fn knowing(start_duty: f64, gain_counts_per_s: f64) -> MotorMonitor {
+        let mut monitor = MotorMonitor { start_duty, ..MotorMonitor::default() };
         monitor.know(&PlantModel {
-            gain_counts_per_s: 11_900.0,
+            gain_counts_per_s,
             tau_s: 0.11,
             coulomb_duty: 0.03,
             load_duty: 0.0,
@@ -665,6 +666,12 @@ mod tests {
             brake_limit: None,
             sag: 0.0,
         });
+        monitor
+    }
+
+    /// A motor braked at 0.31 since 0.95 s and turned off at 0.99 s, whose load swings back by `scale` times 29 counts when it should stand.
+    fn seen_swinging(scale: f64) -> Result<(), Cause> {
+        let mut monitor = knowing(0.06, 11_900.0);
         monitor.drive(0.0, 0.0);
         monitor.drive(0.95, 0.31);
         monitor.drive(0.99, 0.0);
@@ -688,18 +695,9 @@ mod tests {
         assert_eq!(seen_swinging(40.0), Err(Cause::Stalled), "no load swings back that fast");
     }
 
-    /// A motor at 1,020 counts/s of 3,800 is braked and stands; then its load, which has crossed its backlash, takes it along at so many counts/s.
+    /// A motor at 1,020 counts/s of 3,800 is braked and stands; then its load takes it along at so many counts/s.
     fn seen_taken_along(counts_per_s: f64) -> Result<(), Cause> {
-        let mut monitor = MotorMonitor { start_duty: 0.04, ..MotorMonitor::default() };
-        monitor.know(&PlantModel {
-            gain_counts_per_s: 3_900.0,
-            tau_s: 0.11,
-            coulomb_duty: 0.03,
-            load_duty: 0.0,
-            drive_limit: None,
-            brake_limit: None,
-            sag: 0.0,
-        });
+        let mut monitor = knowing(0.04, 3_900.0);
         monitor.release(0.0, 0.0);
         let mut counts = 0.0;
         let braked = [560.0, 310.0, 170.0, 90.0, 0.0, 0.0, 0.0, 0.0];

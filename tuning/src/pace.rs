@@ -132,7 +132,7 @@ impl Pace {
 
     /// The longest gap, where this computer took most of the time of all.
     pub(crate) fn computer_late(&self) -> Option<Late> {
-        let sum = |figure| self.of_gaps(figure).iter().sum::<f64>();
+        let sum = |figure: fn(&Gap) -> f64| self.gaps.iter().map(figure).sum::<f64>();
         let (stolen_s, all_s) = (sum(|gap| gap.stolen_s), sum(|gap| gap.long_s));
         let longest_s = self.longest?.longest_s;
         (2.0 * stolen_s >= all_s).then_some(Late { stolen_s: longest_s, ..self.longest? })

@@ -36,7 +36,7 @@ pub struct FaultRow {
     pub fault: &'static str,
     /// How many runs.
     pub plants: usize,
-    /// Motor off within the deadline, %.
+    /// Motor off within the deadline, %; in mid-run and in trials each drive by itself.
     pub off_in_time: f64,
     /// Named right, %.
     pub named: f64,

@@ -55,8 +55,9 @@ pub struct SuprMotrLoop {
     /// Where it is to go; `None` before the first command.
     goal: Option<f64>,
     from: f64,
-    speed: f64,
+    /// How it goes there, and the highest speed that this was worked out for, counts/s.
     profile: Profile,
+    speed: f64,
     elapsed_s: f64,
     /// Counts x s.
     sum: f64,
