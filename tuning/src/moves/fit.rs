@@ -47,6 +47,8 @@ thresholds! {
         bound: f64 = 0.1,
         /// How much larger than the least the misfit of a rate may be for it to be as likely, in units of the reduced chi-square (of 1 where that is less).
         likely: f64 = 6.0,
+        /// How many times that makes a rate so unlikely that quicker ones are not looked at, where the one before was as unlikely and less so than this one.
+        hopeless: f64 = 4.0,
     }
 }
 
@@ -116,6 +118,9 @@ pub(super) fn fit_moves<L: Law>(
         let Some(best) = tries.flatten().min_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
         nearest = Some(Start(best.1.q));
         found.push((best.0, *rate_hz, best.1));
+        if gets_hopeless(found.iter().map(|fit| fit.0), readings) {
+            break;
+        }
     }
     let best = found.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
     let chi_square = best.0 / readings as f64;
@@ -134,6 +139,17 @@ pub(super) fn fit_moves<L: Law>(
         ramp: 1.0,
     };
     Some(Found { fit, lag_s: (lag_s, deviations[5]), rate_hz: best.1, likely_hz, q: best.2.q })
+}
+
+/// Whether misfits of ever quicker rates go on growing where they are far too large already: three of four ticks of a fit are those of the quickest rates.
+fn gets_hopeless(misfits: impl Iterator<Item = f64> + Clone, readings: usize) -> bool {
+    let least = misfits.clone().fold(f64::INFINITY, f64::min);
+    let most = least + MOVES_FIT.hopeless * MOVES_FIT.likely * (least / readings as f64).max(1.0);
+    let (mut before, mut last) = (f64::NAN, f64::NAN);
+    for misfit in misfits {
+        (before, last) = (last, misfit);
+    }
+    before > most && last > before
 }
 
 fn minimised<L: Law>(stretches: &[Stretch<L>], law: L, q: Vector6<f64>) -> Option<(f64, Problem<'_, L>)> {
@@ -295,5 +311,20 @@ fn soft(residual: f64) -> f64 {
         residual
     } else {
         (2.0 * MOVES_FIT.knee * residual.abs() - MOVES_FIT.knee * MOVES_FIT.knee).sqrt().copysign(residual)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::gets_hopeless;
+
+    #[test]
+    fn quicker_rates_are_left_out_only_where_misfits_go_on_growing_far_above_the_least() {
+        // 100 readings, so that a rate is as likely up to a misfit of 106 and hopeless above 124.
+        let stops = |misfits: &[f64]| gets_hopeless(misfits.iter().copied(), 100);
+        assert!(stops(&[300.0, 100.0, 125.0, 130.0]));
+        assert!(!stops(&[300.0, 100.0, 123.0, 130.0]), "the one before was not so far off");
+        assert!(!stops(&[300.0, 100.0, 140.0, 130.0]), "it falls again");
+        assert!(!stops(&[300.0, 200.0]) && !stops(&[300.0]) && !stops(&[]));
     }
 }
