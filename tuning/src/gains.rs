@@ -29,3 +29,15 @@ pub struct Gains {
     /// Position errors up to this many counts count as none.
     pub deadzone_counts: f64,
 }
+
+impl Gains {
+    /// The gain by which the speed acts on the duty: the proportional part of a velocity loop, the derivative of a loop on the position that acts on the duty directly.
+    #[must_use]
+    pub fn speed_gain(&self) -> f64 {
+        if self.velocity == Pid::default() {
+            self.position.map_or(0.0, |position| position.d)
+        } else {
+            self.velocity.p
+        }
+    }
+}

@@ -282,6 +282,7 @@ fn design<L: LawProbe>(
         backlash_counts: 0.0,
         least_integral_s: 0.0,
         most_overshoot: USUAL_OVERSHOOT,
+        most_speed_gain: None,
     };
     guard.progress("Measuring the lag of the loop");
     let task = settle_lag(guard, request, task, report)?;

@@ -72,11 +72,11 @@ thresholds! {
         /// 2.6 to 3, for which 1.21 and less was predicted, have 2.4.
         no_model: f64 = 2.0,
         /// How often the gains may be lowered.
-        most_back_offs: usize = 3,
+        most_back_offs: usize = 5,
         /// Overshoot, as a share of the step, that gains which cannot be lowered further may show where no reading of the duty says more.
         most_unseen_overshoot: f64 = 0.10,
         /// Factor by which they are lowered, or the goal that they are designed for.
-        back_off: f64 = 0.7,
+        back_off: f64 = 0.85,
         /// The share of the bound to which a duty is lowered that is too loud and nothing else: figures of a second of polls spread by a tenth.
         quieter: f64 = 0.92,
         /// Lower speed of the velocity trial, as a share of full speed.
@@ -196,7 +196,9 @@ pub fn check_moves<L: Law>(
     task: &Task<L>,
     report: &mut Report<L>,
 ) -> Result<(), Cause> {
-    let found = leave_room(guard, request, task, report)?;
+    let mut task = *task;
+    let found = leave_room(guard, request, &mut task, report)?;
+    let task = &task;
     // A loop on the position whose gains were raised and stayed quiet has shown what the model leaves unexplained: backlash, which it passes at each turn in a travel. A
     // velocity loop has not: of 400 in a travel one that stayed quiet had a true maximum sensitivity of 1.83.
     let is_heard = request.method != Method::Velocity && found.is_some_and(|(_, is_doubtful)| !is_doubtful);
@@ -301,7 +303,7 @@ fn try_design<L: Law>(
 fn leave_room<L: Law>(
     guard: &mut ExperimentGuard<'_, L>,
     request: &Request<L>,
-    task: &Task<L>,
+    task: &mut Task<L>,
     report: &mut Report<L>,
 ) -> Result<Option<(f64, bool)>, Cause> {
     // Without a duty that is read back nothing is heard, and a loop without a gain of the speed is no velocity loop.
@@ -324,7 +326,16 @@ fn leave_room<L: Law>(
         let less =
             |position: Pid| Pid { p: factor * position.p, i: factor * position.i, d: factor * position.d };
         let gains = Gains { position: inner.position.map(less), ..inner };
-        propose(report, request, task, Design { gains, ..design }, guard.proposed_travel(task.qpps));
+        let lower = if request.identification == Identification::Fit {
+            // What was heard is above what the rest of the loop controls: that is searched anew beside the gain that may be.
+            task.most_speed_gain = Some(gains.speed_gain());
+            report.task = Some(*task);
+            design_for(request.method, task)
+        } else {
+            None
+        };
+        let lower = lower.unwrap_or(Design { gains, ..design });
+        propose(report, request, task, lower, guard.proposed_travel(task.qpps));
     }
     Ok(Some((found.quiet / factor, found.is_doubtful)))
 }
@@ -564,9 +575,19 @@ fn tail_counts(points: &[Point], (from_s, to_s): (f64, f64), step: f64) -> f64 {
         return 0.0;
     }
     let inside = points.iter().filter(|p| p.t >= from_s && p.t <= to_s);
+    let positions: Vec<f64> = inside.clone().map(|p| p.counts).collect();
+    // A creep to the end is the slower, the lower gains are.
+    if turns(&positions) < 2 {
+        return 0.0;
+    }
     let ends =
         inside.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p.counts), h.max(p.counts)));
     (ends.1 - ends.0).max(0.0) / VERIFY.tail_counts.max(VERIFY.tail_share * step)
+}
+
+/// How often positions turn about from one poll to the next.
+fn turns(positions: &[f64]) -> usize {
+    positions.windows(3).filter(|three| (three[1] - three[0]) * (three[2] - three[1]) < 0.0).count()
 }
 
 /// Overshoot of one move, and what goes on after `late_s` when it should be over. `step` is the longest of the moves.
@@ -579,7 +600,7 @@ fn judge_move(points: &[Point], target: f64, moved: f64, late_s: f64, step: f64)
     let duties: Vec<(f64, f64)> = late().filter_map(|p| p.duty).collect();
     let duty_rms = deviation(&duties);
     // A creep to the end is no oscillation.
-    if positions.windows(3).filter(|w| (w[1] - w[0]) * (w[2] - w[1]) < 0.0).count() < 2 {
+    if turns(&positions) < 2 {
         return Measured { overshoot, duty_rms, ..Measured::default() };
     }
     let range = positions.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
@@ -629,6 +650,7 @@ mod tests {
             backlash_counts: 0.0,
             least_integral_s: 0.0,
             most_overshoot: USUAL_OVERSHOOT,
+            most_speed_gain: None,
         };
         softer(&Request::default(), &task, &DESIGN, &measured).gains.velocity
     }
@@ -650,5 +672,24 @@ mod tests {
         let Pid { p, i, .. } = DESIGN.gains.velocity;
         assert!((rough.p / p - VERIFY.back_off).abs() < 1e-9, "{rough:?}");
         assert!((rough.i / i - VERIFY.back_off * VERIFY.back_off).abs() < 1e-9, "{rough:?}");
+    }
+
+    #[test]
+    fn a_creep_to_the_end_of_a_move_is_no_oscillation_and_a_position_that_turns_about_there_is() {
+        let points = |place: fn(f64) -> f64| -> Vec<Point> {
+            (0..40)
+                .map(|n| Point {
+                    t: f64::from(n) * 0.01,
+                    counts: place(f64::from(n)),
+                    duty: None,
+                    amps: None,
+                    volts: None,
+                    limited: false,
+                })
+                .collect()
+        };
+        let tail = |place| tail_counts(&points(place), (0.0, 0.4), 200.0);
+        assert_eq!(tail(|n| 190.0 + (0.25 * n).floor()), 0.0);
+        assert!(tail(|n| 196.0 + (6.0 * (0.8 * n).sin()).round()) > 1.0);
     }
 }

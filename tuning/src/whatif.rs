@@ -97,6 +97,7 @@ mod tests {
             backlash_counts: 0.0,
             least_integral_s: 0.0,
             most_overshoot: crate::design::USUAL_OVERSHOOT,
+            most_speed_gain: None,
         }
     }
 

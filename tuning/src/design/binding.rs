@@ -102,6 +102,7 @@ mod tests {
             backlash_counts: 0.0,
             least_integral_s: 0.0,
             most_overshoot: USUAL_OVERSHOOT,
+            most_speed_gain: None,
         }
     }
 

@@ -18,10 +18,10 @@ pub use velocity::design_velocity;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Lag, PlantModel};
+    use crate::model::{Gains, Lag, Pid, PlantModel};
     use crate::plain_law::PlainLaw;
-    use crate::score::POSITION_OVERSHOOT;
-    use crate::ticks::velocity_test;
+    use crate::score::{POSITION_OVERSHOOT, VELOCITY_OVERSHOOT};
+    use crate::ticks::{position_test_and_end, velocity_test};
 
     fn task(level: f64) -> Task<PlainLaw> {
         let lag = Lag { filter_s: 0.004, delay_ticks: 1.0 };
@@ -44,6 +44,7 @@ mod tests {
             backlash_counts: 0.0,
             least_integral_s: 0.0,
             most_overshoot: USUAL_OVERSHOOT,
+            most_speed_gain: None,
         }
     }
 
@@ -80,6 +81,42 @@ mod tests {
             // A PD has no dead zone of a count, and each search ends somewhere near its best.
             let (pd, pid) = (cost(design_pd(&task)), cost(design_pid(&task)));
             assert!(pid <= 1.15 * pd, "tau {tau_s} s: {pid} with an integral, {pd} without");
+        }
+    }
+
+    #[test]
+    fn gains_beside_a_bounded_speed_gain_are_dearer_than_free_ones_and_cheaper_than_all_of_them_scaled() {
+        type Method = fn(&Task<PlainLaw>) -> Option<Design>;
+        let methods: [(&str, Method); 3] =
+            [("velocity", design_velocity), ("pd", design_pd), ("piv", design_piv)];
+        for (name, method) in methods {
+            let (free, share) = (method(&task(50.0)).expect("gains"), 0.6);
+            let bound = share * free.gains.speed_gain();
+            let task = Task { most_speed_gain: Some(bound), ..task(50.0) };
+            let bounded = method(&task).expect("gains");
+            assert!(bounded.gains.speed_gain() <= 1.000_01 * bound, "{name}: {bounded:?}");
+            let less = |pid: Pid| Pid { p: share * pid.p, i: share * pid.i, d: share * pid.d };
+            let gains = Gains {
+                velocity: less(free.gains.velocity),
+                position: free.gains.position.map(less),
+                ..free.gains
+            };
+            let (scaled, overshoot) = match gains.position {
+                None => {
+                    (velocity_test(&task.plant, &task.law, task.lag, &gains, task.qpps), VELOCITY_OVERSHOOT)
+                }
+                Some(_) => {
+                    let test = position_test_and_end(&task.plant, &task.law, task.lag, &gains, task.qpps);
+                    (test.0, POSITION_OVERSHOOT)
+                }
+            };
+            let is_smooth = scaled.overshoot <= task.most_overshoot;
+            let [free, bounded, scaled] =
+                [free.score, bounded.score, scaled].map(|score| score.cost(overshoot));
+            assert!(
+                free < 1.1 * bounded && (!is_smooth || bounded < scaled),
+                "{name}: {free} free, {bounded} bounded, {scaled} scaled"
+            );
         }
     }
 

@@ -44,6 +44,9 @@ impl Loops {
         if gains.velocity.i * task.least_integral_s > 1.000_001 * gains.velocity.p {
             return None;
         }
+        if task.most_speed_gain.is_some_and(|most| gains.speed_gain() > 1.000_001 * most) {
+            return None;
+        }
         let margins = self.nominal.margins(gains, task.qpps);
         let kept = margins.ms <= task.goal.ms
             && margins.noise_duty * task.noise_factor <= task.goal.noise_duty

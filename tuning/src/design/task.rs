@@ -72,6 +72,9 @@ pub struct Task<L: Law> {
     pub least_integral_s: f64,
     /// Overshoot of a speed step beyond which the cost jumps, over the step.
     pub most_overshoot: f64,
+    /// Highest [`Gains::speed_gain`], where the machine has shown one: a springy shaft that oscillates far above what the loop controls is stirred by that gain alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub most_speed_gain: Option<f64>,
 }
 
 /// The overshoot of a speed step that a well-known motor may be designed for.

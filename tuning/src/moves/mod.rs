@@ -286,6 +286,7 @@ fn task_of<L: Law>(request: &Request<L>, found: &Found) -> Task<L> {
         backlash_counts: 0.0,
         least_integral_s: 0.0,
         most_overshoot: USUAL_OVERSHOOT,
+        most_speed_gain: None,
     }
 }
 
