@@ -406,7 +406,8 @@ fn softer<L: Law>(request: &Request<L>, task: &Task<L>, design: &Design, measure
     // The noise of a duty goes with the gains: where nothing else is wrong, they are lowered by what it is too loud.
     let is_loud_alone = unsteadiness(design, measured) <= 1.0;
     let share = if is_loud_alone {
-        (VERIFY.quieter / loudness(design, measured)).clamp(VERIFY.back_off, VERIFY.quieter)
+        let least = VERIFY.back_off.min(VERIFY.quieter);
+        (VERIFY.quieter / loudness(design, measured)).clamp(least, VERIFY.quieter)
     } else {
         VERIFY.back_off
     };
