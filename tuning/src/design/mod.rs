@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn gains_beside_a_bounded_speed_gain_are_dearer_than_free_ones_and_cheaper_than_all_of_them_scaled() {
+    fn gains_beside_a_bounded_speed_gain_cost_less_than_all_of_them_scaled_where_that_is_smooth() {
         type Method = fn(&Task<PlainLaw>) -> Option<Design>;
         let methods: [(&str, Method); 3] =
             [("velocity", design_velocity), ("pd", design_pd), ("piv", design_piv)];

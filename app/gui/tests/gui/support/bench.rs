@@ -192,17 +192,16 @@ impl Bench {
         Store::at(self.kept.path())
     }
 
-    /// Lets time pass as it does with the program: the device loop works and the window draws each 100 ms. In the midst of a long time it draws as seldom as on a busy
-    /// computer, where half as much is still soon enough for a motion: most of what these tests take is drawing.
+    /// Lets time pass as it does with the program: the device loop works and the window draws each 100 ms. In the midst of a long time it draws each 200 ms, as on a busy
+    /// computer, which still keeps a motion alive.
     pub fn pass(&mut self, time: Duration) {
-        let (begin, end) = (self.line.clock.now(), self.line.clock.now() + time);
-        loop {
+        let begin = self.line.clock.now();
+        let end = begin + time;
+        while self.line.clock.now() < end {
             let now = self.line.clock.now();
-            if now >= end {
-                break;
-            }
             let in_midst = now >= begin + FRAME * 2 && now + FRAME * 4 <= end;
-            self.turn_loop((now + if in_midst { FRAME * 2 } else { FRAME }).min(end));
+            let frame = if in_midst { FRAME * 2 } else { FRAME };
+            self.turn_loop((now + frame).min(end));
             self.harness.step();
         }
     }
