@@ -146,8 +146,8 @@ causes! {
     /// The lag of the loop could not be measured; the gains assume the usual one.
     LagUnknown "The lag of the controller's loop could not be measured; the gains assume the usual one.";
     /// What was measured does not show that the loop keeps the margin that it should.
-    MarginUnsure "What was measured does not show that the loop keeps its margin: with a lag some milliseconds longer its maximum sensitivity \
-        would be above 1.8. Try it under load; a softer level keeps more distance.";
+    MarginUnsure "What was measured does not show that the loop keeps its margin: its maximum sensitivity may be above 1.8. Try it under load; \
+        a softer level keeps more distance.";
     /// The gains were lowered since the measured loop was rougher than predicted.
     BackedOff "The gains were lowered, since the measured loop was rougher than predicted.";
     /// The two directions differ by more than 5 %.
