@@ -6,7 +6,7 @@ use crate::design::Task;
 use crate::experiment::rest;
 use crate::experiment_guard::ExperimentGuard;
 use crate::lag::goes_by_whole_counts;
-use crate::law::Law;
+use crate::law::{Facts, Law};
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::model::{Gains, Pid};
 use crate::oscillation::deviation;
@@ -76,6 +76,10 @@ thresholds! {
         ringing: f64 = 1.3,
         /// Share of a travel that a stroke covers.
         inside_share: f64 = 0.35,
+        /// The multiple that a loop whose gains are tried at rest is to stand when they are lowered. They go up in steps of 1.4, so that what is rough at one of them may be
+        /// quiet just below it, and each stroke crosses the backlash, which a loop that holds a position or a speed seldom does. MEASURED.md, "What lowers gains that were
+        /// right", has what other values give.
+        kept_at_rest: f64 = 1.6,
         /// How far away the target of a loop on the position is then, as a share of the travel.
         inside_far: f64 = 0.45,
         /// Counts in a tick from which on a derivative alone gives a duty: with fewer it gives pulses, and polls see some of them.
@@ -105,6 +109,13 @@ pub(crate) struct Headroom {
     pub(crate) wanted: f64,
     /// Nothing could be heard at some of the gains, or an oscillation once and not again: what is called quiet may be rough.
     pub(crate) is_doubtful: bool,
+}
+
+impl Headroom {
+    /// The multiple that the gains are to stand when they are lowered for not standing the one that was wanted.
+    pub(crate) fn kept(&self, facts: &Facts) -> f64 {
+        if facts.writes_at_rest { self.wanted.min(MARGIN.kept_at_rest) } else { self.wanted }
+    }
 }
 
 /// Whether gains may be too sensitive for all that was measured: with the longest lag that is still likely, or as long as the law may have it where
@@ -385,7 +396,7 @@ pub(crate) fn headroom<L: Law>(
     };
     let mut is_doubtful = false;
     let mut heard_above: Option<f64> = None;
-    let mut quiet = 0.0;
+    let (mut quiet, mut written) = (0.0, 1.0);
     let mut loudness = Loudness::default();
     for factor in std::iter::once(1.0).chain(raised.factors().iter().map(|factor| factor.min(wanted))) {
         if factor <= quiet {
@@ -399,6 +410,7 @@ pub(crate) fn headroom<L: Law>(
                 break;
             }
             raised.write(guard, factor)?;
+            written = factor;
         }
         let bound_here = bound(&raised, factor);
         let measured = raised.activity(guard, true)?;
@@ -435,9 +447,9 @@ pub(crate) fn headroom<L: Law>(
         for _ in 0..MARGIN.longer {
             squares += raised.activity(guard, true)?.powi(2);
         }
-        let most = loudness.most() * predicted(&raised, quiet);
-        if (squares / f64::from(MARGIN.longer)).sqrt() > most.hypot(MARGIN.ringing * ringing(&raised, quiet))
-        {
+        let most = loudness.most() * predicted(&raised, written);
+        let after_step = MARGIN.ringing * ringing(&raised, written);
+        if (squares / f64::from(MARGIN.longer)).sqrt() > most.hypot(after_step) {
             is_doubtful = true;
             heard_above = Some(loudness.before_it_grew());
         }

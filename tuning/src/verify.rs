@@ -201,12 +201,13 @@ pub fn check_moves<L: Law>(
     let task = &task;
     // A loop on the position whose gains were raised and stayed quiet has shown what the model leaves unexplained: backlash, which it passes at each turn in a travel. A
     // velocity loop has not: of 400 in a travel one that stayed quiet had a true maximum sensitivity of 1.83.
-    let is_heard = request.method != Method::Velocity && found.is_some_and(|(_, is_doubtful)| !is_doubtful);
+    let is_heard = request.method != Method::Velocity && found.is_some_and(|room| !room.is_doubtful);
     let is_unexplained = !is_heard && report.lag.is_some_and(|lag| lag.is_unexplained());
-    let is_doubtful = is_unexplained || found.is_some_and(|(_, is_doubtful)| is_doubtful);
-    try_until_smooth(guard, request, task, report, found.map(|(room, _)| room))?;
+    let is_doubtful = is_unexplained || found.is_some_and(|room| room.is_doubtful);
+    try_until_smooth(guard, request, task, report, found.map(|room| room.factor))?;
     let is_short = |design: Design| {
-        may_be_short(task, &design.gains, is_doubtful)
+        found.is_some_and(|room| room.is_rough_above)
+            || may_be_short(task, &design.gains, is_doubtful)
             || is_unexplained && unexplained_ms(design.ms) > MARGIN.most_ms
             || !is_heard && report.lag.is_some_and(|lag| lag.chi_square > VERIFY.no_model)
     };
@@ -298,14 +299,24 @@ fn try_design<L: Law>(
     }
 }
 
-/// Raises the gains of the loop on the machine, and lowers the proposed gains where less of it is left than they promise. Gives what is
-/// left, and whether that is doubtful.
+/// What is left of the margin of the gains that are proposed.
+#[derive(Clone, Copy, Debug)]
+struct Room {
+    /// The multiple of them at which the duty was as quiet as predicted.
+    factor: f64,
+    /// What is called quiet may be rough.
+    is_doubtful: bool,
+    /// They were not lowered, though they were rough at the multiple that was wanted.
+    is_rough_above: bool,
+}
+
+/// Raises the gains of the loop on the machine, and lowers the proposed gains where less of it is left than they promise. Gives what is left.
 fn leave_room<L: Law>(
     guard: &mut ExperimentGuard<'_, L>,
     request: &Request<L>,
     task: &mut Task<L>,
     report: &mut Report<L>,
-) -> Result<Option<(f64, bool)>, Cause> {
+) -> Result<Option<Room>, Cause> {
     // Without a duty that is read back nothing is heard, and a loop without a gain of the speed is no velocity loop.
     let can_be_raised = guard.facts.has_duty && stays_put(task, request.excitation);
     let damped =
@@ -319,8 +330,9 @@ fn leave_room<L: Law>(
         Err(Cause::TravelLimit) => return guard.come_to_rest().map(|()| None),
         found => found?,
     };
-    let factor = found.quiet / found.wanted;
-    if factor < 0.999 {
+    let factor = (found.quiet / found.kept(guard.facts)).min(1.0);
+    let is_lowered = factor < 0.999;
+    if is_lowered {
         warn_of_lowering(report);
         let inner = scaled(&design.gains, factor);
         let less =
@@ -337,7 +349,8 @@ fn leave_room<L: Law>(
         let lower = lower.unwrap_or(Design { gains, ..design });
         propose(report, request, task, lower, guard.proposed_travel(task.qpps));
     }
-    Ok(Some((found.quiet / factor, found.is_doubtful)))
+    let is_rough_above = !is_lowered && found.quiet < 0.999 * found.wanted;
+    Ok(Some(Room { factor: found.quiet / factor, is_doubtful: found.is_doubtful, is_rough_above }))
 }
 
 /// A position that hunts is first looked at for backlash: within it nothing can be held. `None` where

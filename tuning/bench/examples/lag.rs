@@ -1,9 +1,8 @@
-//! What not knowing the lag costs: `cargo run --release -p brushwork-tuning-bench --example lag -- SEED PLANTS velocity|pd|pid|piv`. For each plant the lag
-//! that was measured beside the true one, and what the gains of the run cost beside those of designs for the true lag and for the likely lag alone, which
-//! are not tried on the machine.
+//! What not knowing the lag costs: `cargo run --release -p brushwork-tuning-bench --example lag -- SEED PLANTS velocity|pd|pid|piv [motion-mind]`. For each
+//! plant the lag that was measured beside the true one, and what the gains of the run cost beside those of designs for the true lag and for the likely lag alone, which
+//! are not tried on the machine, the last one without what raised gains showed there.
 #![expect(clippy::print_stdout, reason = "a tool talks to the terminal")]
 
-use brushwork_mcp_axis::McpLaw;
 use brushwork_mcp_sim::motion::ControlLaw;
 use brushwork_tuning::design::Task;
 use brushwork_tuning::law::Law as _;
@@ -11,15 +10,16 @@ use brushwork_tuning::model::Lag;
 use brushwork_tuning::report::Verdict;
 use brushwork_tuning::tune::{Method, design_for};
 use brushwork_tuning_bench::mcp::laws::MOST_TUNED_MS;
+use brushwork_tuning_bench::motion_mind::population::MindSetup;
 use brushwork_tuning_bench::optimum::Optima as _;
 use brushwork_tuning_bench::reject::{MOST_MS, group};
 use brushwork_tuning_bench::run::{Judgement, judge, judge_report, request_of, tune_plant};
 use brushwork_tuning_bench::table::{Case, cases, quantile};
-use brushwork_tuning_bench::unit::Unit as _;
+use brushwork_tuning_bench::unit::Unit;
 use rayon::prelude::*;
 
 /// Whose gains are compared.
-const OF: [&str; 3] = ["run", "true lag", "likely lag"];
+const OF: [&str; 4] = ["run", "true lag", "likely lag", "likely lag, gains not raised on the machine"];
 
 struct Found {
     text: String,
@@ -31,14 +31,21 @@ struct Found {
 
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).collect();
+    match words.get(3).map(String::as_str) {
+        Some("motion-mind") => show::<MindSetup>(&words),
+        _ => show::<ControlLaw>(&words),
+    }
+}
+
+fn show<U: Unit>(words: &[String]) {
     let number = |n: usize, usual: u64| words.get(n).and_then(|text| text.parse().ok()).unwrap_or(usual);
     let (seed, plants) = (number(0, 7), number(1, 24) as usize);
     let wanted = words.get(2).map_or("velocity", String::as_str);
-    let Some((_, method)) = ControlLaw::TASKS.iter().find(|(name, _)| *name == wanted) else {
+    let Some((_, method)) = U::TASKS.iter().find(|(name, _)| *name == wanted) else {
         println!("no method {wanted}");
         return;
     };
-    let all = cases::<ControlLaw>(seed, plants, false);
+    let all = cases::<U>(seed, plants, false);
     let found: Vec<Found> = all.par_iter().filter_map(|case| find(case, *method)).collect();
     for one in &found {
         println!("{}", one.text);
@@ -68,21 +75,23 @@ fn main() {
     );
 }
 
-fn find(case: &Case<ControlLaw>, method: Method) -> Option<Found> {
+fn find<U: Unit>(case: &Case<U>, method: Method) -> Option<Found> {
     let (truth, specimen) = (&case.under_test.truth, &case.under_test.specimen);
     let optimum = case.optima.of(method)?;
     let (report, _) = tune_plant(specimen, &request_of(specimen, method));
     let run = judge_report(&case.under_test, &optimum, &report);
     let tick_s = truth.law.tick_s();
-    let of = |task: Task<McpLaw>| {
+    let of = |task: Task<U::Law>| {
         let gains = design_for(method, &task)?.gains;
-        let registers = ControlLaw::registers(&task.law, &gains, task.qpps);
+        let registers = U::registers(&task.law, &gains, task.qpps);
         Some(judge(method, &case.under_test, &optimum, &registers))
     };
     let whole = Lag { delay_ticks: truth.lag.delay_ticks + truth.winding_s / tick_s, ..truth.lag };
     let by_truth = report.task.and_then(|task| of(Task { lag: whole, worst_lag: whole, ..task }));
     let by_likely = report.task.and_then(|task| of(Task { worst_lag: task.lag, ..task }));
-    let judged = [Some(run), by_truth, by_likely];
+    let not_raised =
+        report.task.and_then(|task| of(Task { worst_lag: task.lag, most_speed_gain: None, ..task }));
+    let judged = [Some(run), by_truth, by_likely, not_raised];
     let costs = judged.map(|one| one.map_or_else(String::new, |one| format!("{:.2}", one.j)));
     let outcome = group(method, specimen, truth, &run).unwrap_or_default();
     let interval = report.lag.map(|lag| lag.interval_s);

@@ -80,6 +80,10 @@ pub(super) fn ascend<L: Law>(
         let middle = (low * high).sqrt();
         if loops.within(task, &gains(middle)).is_some() { low = middle } else { high = middle }
     }
+    // The margins of a loop that does not come to rest may look like those of a calm one, where a step goes past the gain between them.
+    while low > top * 1e-4 && !loops.stable(task, &gains(low)) {
+        low /= ratio;
+    }
     Some(low)
 }
 

@@ -5,6 +5,8 @@ use brushwork_motion_mind_axis::law::{
     MotionMindLaw, MotionMindProposal, MotionMindRegisters, MotionMindWrite, bits,
 };
 use brushwork_tuning::cause::Cause;
+use brushwork_tuning::design::Task;
+use brushwork_tuning::model::Gains;
 use brushwork_tuning::report::Verdict;
 use brushwork_tuning::trace::Trace;
 use brushwork_tuning::trial::{Trial, TrialRequest, on_model, run_trial};
@@ -12,8 +14,9 @@ use brushwork_tuning::tune::Method;
 use brushwork_tuning::whatif::{forecast, redesign_registers};
 use brushwork_tuning_bench::motion_mind::line::MindLine;
 use brushwork_tuning_bench::motion_mind::population::{MindSetup, MindSpecimen, specimen};
-use brushwork_tuning_bench::run::{request_of, tune_plant};
-use brushwork_tuning_bench::unit::{self, Unit};
+use brushwork_tuning_bench::optimum::Optimum;
+use brushwork_tuning_bench::run::{judge_report, request_of, tune_plant};
+use brushwork_tuning_bench::unit::{self, UnderTest, Unit};
 
 type Report = unit::Report<MindSetup>;
 type SimulatedMind = MindAxis<MindLine>;
@@ -119,6 +122,52 @@ fn another_level_is_other_registers_and_a_stiffer_one_goes_nearer_to_its_bound()
         assert!(shown[0].ms < shown[1].ms, "{method:?}: {} {}", shown[0].ms, shown[1].ms);
         assert!(shown[2].load_dip < shown[0].load_dip, "{method:?}");
     }
+}
+
+/// Arms that rattle in their backlash with three times their gains, and with twice them do not.
+#[test]
+fn gains_that_stand_to_be_doubled_are_not_lowered_for_what_three_times_as_much_shows() {
+    for number in [39, 87] {
+        let under_test = UnderTest::new(specimen(11, number));
+        let (report, _) = tune_plant(&under_test.specimen, &request_of(&under_test.specimen, Method::Pd));
+        assert_eq!(report.causes, [Cause::MarginUnsure], "plant {number}");
+        let nothing = Optimum { cost: 1.0, duty_rms: 0.08, gains: Gains::default() };
+        let judged = judge_report(&under_test, &nothing, &report);
+        assert!(judged.ms > 1.3 && judged.ms < 1.8, "plant {number}: a true Ms of {:.2}", judged.ms);
+    }
+}
+
+#[test]
+fn no_level_gives_the_speed_more_gain_than_the_machine_was_heard_to_bear() {
+    let plant = specimen(11, 47);
+    let (report, _) = tune_plant(&plant, &request_of(&plant, Method::Pd));
+    let task = report.task.expect("a model");
+    let bound = task.most_speed_gain.expect("its raised gains oscillated");
+    let gain_at = |report: &Report, level: f64| {
+        let registers =
+            redesign_registers(report, level).unwrap_or_else(|| panic!("registers at level {level}"));
+        on_model(&task, &registers, Method::Pd).1.speed_gain()
+    };
+    for level in [0.0, 30.0, 70.0, 100.0] {
+        let gain = gain_at(&report, level);
+        // Rounded to the registers.
+        assert!(gain < 1.05 * bound, "level {level}: {gain} of {bound}");
+    }
+    let unbounded = Report { task: Some(Task { most_speed_gain: None, ..task }), ..report };
+    let free = gain_at(&unbounded, 100.0);
+    assert!(free > 1.1 * bound, "{free} of {bound}");
+}
+
+/// An arm whose gains, as they are searched, step from calm ones past the border to unstable ones whose margins look calm again.
+#[test]
+fn the_stiffest_level_has_registers_too() {
+    let plant = specimen(11, 23);
+    let (report, _) = tune_plant(&plant, &request_of(&plant, Method::Pd));
+    let task = Task { most_speed_gain: None, ..report.task.expect("a model") };
+    let report = Report { task: Some(task), ..report };
+    let registers = redesign_registers(&report, 100.0).expect("registers");
+    let (task, gains) = on_model(&task, &registers, Method::Pd);
+    assert!(forecast(&task, &gains).is_stable);
 }
 
 #[test]
