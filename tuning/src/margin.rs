@@ -77,8 +77,8 @@ thresholds! {
         /// Share of a travel that a stroke covers.
         inside_share: f64 = 0.35,
         /// The multiple that a loop whose gains are tried at rest is to stand when they are lowered. They go up in steps of 1.4, so that what is rough at one of them may be
-        /// quiet just below it, and each stroke crosses the backlash, which a loop that holds a position or a speed seldom does. MEASURED.md, "What lowers gains that were
-        /// right", has what other values give.
+        /// quiet just below it, and each stroke crosses the backlash, which a loop that holds a position or a speed seldom does. MEASURED.md, "Motion Mind 3", has what other
+        /// values give.
         kept_at_rest: f64 = 1.6,
         /// How far away the target of a loop on the position is then, as a share of the travel.
         inside_far: f64 = 0.45,
