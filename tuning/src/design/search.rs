@@ -70,7 +70,8 @@ pub(super) fn ascend<L: Law>(
     top: f64,
     gains: impl Fn(f64) -> Gains,
 ) -> Option<f64> {
-    let (mut factor, ratio) = (top * 1e-4, 1.0 + SEARCH.rise);
+    let (lowest, ratio) = (top * 1e-4, 1.0 + SEARCH.rise);
+    let mut factor = lowest;
     loops.within(task, &gains(factor))?;
     while factor < top && loops.within(task, &gains(factor * ratio)).is_some() {
         factor *= ratio;
@@ -81,7 +82,7 @@ pub(super) fn ascend<L: Law>(
         if loops.within(task, &gains(middle)).is_some() { low = middle } else { high = middle }
     }
     // The margins of a loop that does not come to rest may look like those of a calm one, where a step goes past the gain between them.
-    while low > top * 1e-4 && !loops.stable(task, &gains(low)) {
+    while low > lowest && !loops.stable(task, &gains(low)) {
         low /= ratio;
     }
     Some(low)
