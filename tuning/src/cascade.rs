@@ -1,7 +1,7 @@
 //! A velocity PID with feed-forward, alone or under a position PID: the loop of many controllers, in simulation.
 
 use crate::gains::Gains;
-use crate::law::{Facts, Seen};
+use crate::law::{Facts, Law, Seen};
 use crate::model::Lag;
 use crate::setpoint::Setpoint;
 
@@ -27,6 +27,26 @@ pub const CASCADE: Facts = Facts {
     unmodelled_s: 0.5 / 300.0,
     integral_times: (30.0, 0.65),
 };
+
+/// How a loop of this kind computes.
+#[derive(Clone, Copy, Debug)]
+pub struct Manner {
+    /// How much of the setpoint over QPPS is added to the duty.
+    pub feed_forward: f64,
+    /// Length of a tick, s.
+    pub tick_s: f64,
+    /// Whether the derivative of a position sees the filtered speed of the velocity loop.
+    pub filters_derivative: bool,
+}
+
+impl Manner {
+    /// That of a law.
+    #[must_use]
+    pub fn of<L: Law>(law: &L) -> Self {
+        let (feed_forward, tick_s) = (law.feed_forward(), law.tick_s());
+        Self { feed_forward, tick_s, filters_derivative: law.filters_derivative() }
+    }
+}
 
 /// The state of the loop.
 #[derive(Clone, Copy, Debug)]
@@ -61,18 +81,10 @@ impl Cascade {
     }
 
     /// One tick: the duty.
-    pub fn tick(
-        &mut self,
-        gains: (&Gains, f64),
-        (feed_forward, tick_s): (f64, f64),
-        setpoint: Setpoint,
-        seen: &Seen<'_>,
-    ) -> f64 {
+    pub fn tick(&mut self, gains: (&Gains, f64), manner: Manner, setpoint: Setpoint, seen: &Seen<'_>) -> f64 {
         match setpoint {
-            Setpoint::Speed(speed) => self.velocity(gains, (feed_forward, tick_s), speed, seen),
-            Setpoint::Position(position, bound) => {
-                self.position(gains, (feed_forward, tick_s), (position, bound), seen)
-            }
+            Setpoint::Speed(speed) => self.velocity(gains, manner, speed, seen),
+            Setpoint::Position(position, bound) => self.position(gains, manner, (position, bound), seen),
         }
     }
 
@@ -80,7 +92,7 @@ impl Cascade {
     fn velocity(
         &mut self,
         (gains, qpps): (&Gains, f64),
-        (feed_forward, tick_s): (f64, f64),
+        Manner { feed_forward, tick_s, .. }: Manner,
         setpoint: f64,
         seen: &Seen<'_>,
     ) -> f64 {
@@ -103,7 +115,7 @@ impl Cascade {
     fn position(
         &mut self,
         (all, qpps): (&Gains, f64),
-        (feed_forward, tick_s): (f64, f64),
+        manner: Manner,
         (target, bound): (f64, f64),
         seen: &Seen<'_>,
     ) -> f64 {
@@ -113,17 +125,22 @@ impl Cascade {
             self.last_target = target;
         }
         let error = target - seen.count;
-        let slope = self.last_position_error.map_or(0.0, |before| (error - before) / tick_s);
+        let by_counts = |before: f64| (error - before) / manner.tick_s;
+        let slope = if manner.filters_derivative {
+            -seen.speed
+        } else {
+            self.last_position_error.map_or(0.0, by_counts)
+        };
         self.last_position_error = Some(error);
         let acting = if error.abs() <= all.deadzone_counts { 0.0 } else { error };
         let most = all.max_integral;
-        self.position_integral = (self.position_integral + acting * tick_s).clamp(-most, most);
+        self.position_integral = (self.position_integral + acting * manner.tick_s).clamp(-most, most);
         let wanted = gains.p * acting + gains.i * self.position_integral + gains.d * slope;
         let speed = wanted.clamp(-bound, bound);
         let v = all.velocity;
         if v.p == 0.0 && v.i == 0.0 && v.d == 0.0 {
             return (speed / qpps).clamp(-1.0, 1.0);
         }
-        self.velocity((all, qpps), (feed_forward, tick_s), speed, seen)
+        self.velocity((all, qpps), manner, speed, seen)
     }
 }

@@ -52,6 +52,7 @@ impl DiscretePlant {
 pub struct LoopPlant {
     tick_s: f64,
     feed_forward: f64,
+    filters_derivative: bool,
     lag: Lag,
     plant: DiscretePlant,
     omega: Vec<f64>,
@@ -93,8 +94,21 @@ impl LoopPlant {
         let speed = position.iter().zip(&slope).zip(&filter).map(|((p, s), f)| p * s * f).collect();
         let delay = omega.iter().map(|w| Complex::from_polar(1.0, -w * tick_s * lag.delay_ticks)).collect();
         let integral = slope.iter().map(|s| one / s).collect();
-        let feed_forward = law.feed_forward();
-        Self { tick_s, feed_forward, lag, plant, omega, slope, integral, position, speed, filter, delay }
+        let (feed_forward, filters_derivative) = (law.feed_forward(), law.filters_derivative());
+        Self {
+            tick_s,
+            feed_forward,
+            filters_derivative,
+            lag,
+            plant,
+            omega,
+            slope,
+            integral,
+            position,
+            speed,
+            filter,
+            delay,
+        }
     }
 
     /// Maximum sensitivity and noise of a loop; the loop must be stable for them to mean anything.
@@ -158,7 +172,8 @@ impl LoopPlant {
             by_speed += self.integral[n] * self.integral[n] * gains.velocity_sum;
         }
         let by_position = gains.position.map_or(Complex::new(0.0, 0.0), |position| {
-            let wanted = self.integral[n] * position.i + self.slope[n] * position.d + position.p;
+            let slope = if self.filters_derivative { self.slope[n] * self.filter[n] } else { self.slope[n] };
+            let wanted = self.integral[n] * position.i + slope * position.d + position.p;
             let forward = if is_simple(gains) { 1.0 } else { self.feed_forward };
             wanted * (by_speed + forward)
         });
@@ -181,8 +196,12 @@ impl LoopPlant {
         let (mut wanted, mut new_position_sum) = (DVector::zeros(size), DVector::zeros(size));
         if let Some(position) = gains.position {
             new_position_sum = unit(position_sum) - &y * tick_s;
-            wanted =
-                &y * -position.p + &new_position_sum * position.i - (&y - unit(last)) * (position.d / tick_s);
+            let by_slope = if self.filters_derivative {
+                &measured * position.d
+            } else {
+                (&y - unit(last)) * (position.d / tick_s)
+            };
+            wanted = &y * -position.p + &new_position_sum * position.i - by_slope;
         }
         let new_error = &wanted - &measured;
         let new_sum = unit(sum) + &new_error * tick_s;

@@ -1,7 +1,7 @@
 //! The plainest law: a cascade whose registers are the gains themselves. For examples and tests, and to begin a law of one's own with.
 
 use crate::axis::AxisError;
-use crate::cascade::{CASCADE, Cascade};
+use crate::cascade::{CASCADE, Cascade, Manner};
 use crate::gains::Gains;
 use crate::law::{Ending, Facts, Law, Seen};
 use crate::law_probe::LawProbe;
@@ -53,7 +53,7 @@ impl Law for PlainLaw {
     }
 
     fn tick(&self, state: &mut Cascade, gains: (&Gains, f64), setpoint: Setpoint, seen: &Seen<'_>) -> f64 {
-        state.tick(gains, (self.feed_forward(), self.tick_s()), setpoint, seen)
+        state.tick(gains, Manner::of(self), setpoint, seen)
     }
 
     fn steady(&self, gains: (&Gains, f64), speed: f64, duty: f64) -> Cascade {

@@ -286,12 +286,16 @@ fn design<L: LawProbe>(
     };
     guard.progress("Measuring the lag of the loop");
     let task = settle_lag(guard, request, task, report)?;
-    let is_direct = matches!(request.method, Method::Pd | Method::Pid);
-    let task = if is_direct && task.law.filters_derivative() { filtered(task) } else { task };
-    // A filter is met by a loop's speed alone, a delay or a winding by its position too: where the record does not tell them apart, the worst is the latter.
+    // A filter is met by a loop's speed alone, a delay or a winding by its position too: where the record does not tell them apart, or a derivative sees the
+    // filter alone, the worst is the latter.
     let may_lack_filter = report.lag.is_some_and(|lag| lag.may_lack_filter);
     let is_position = request.method != Method::Velocity;
-    let worst_lag = if is_position && may_lack_filter { filtered(task).worst_lag } else { task.worst_lag };
+    let filters_derivative =
+        matches!(request.method, Method::Pd | Method::Pid) && task.law.filters_derivative();
+    let is_worst_delay = is_position && may_lack_filter || filters_derivative;
+    let worst_lag = if is_worst_delay { filtered(task).worst_lag } else { task.worst_lag };
+    let is_filter_known = report.lag.is_some() && !may_lack_filter;
+    let task = if filters_derivative && !is_filter_known { filtered(task) } else { task };
     let task = Task { worst_lag, ..task };
     let task = if request.method == Method::Pid {
         with_backlash(guard, request, task, probe, report)?
@@ -548,7 +552,7 @@ fn unfiltered<L: Law>(task: Task<L>) -> Task<L> {
     Task { noise_factor: task.noise_factor * louder.max(1.0), ..task }
 }
 
-/// The task of a loop on the position whose derivative sees the filtered speed: what the filter takes is a delay of that loop, too.
+/// The task of a loop on the position where the filter is not told from a delay, or may not be one: all that it takes is a delay of that loop, too.
 fn filtered<L: Law>(task: Task<L>) -> Task<L> {
     let tick_s = task.law.tick_s();
     let as_delay = |lag: Lag| Lag { filter_s: 0.0, delay_ticks: lag.delay_ticks + lag.filter_s / tick_s };

@@ -7,7 +7,7 @@ use crate::registers::{
 };
 use crate::table;
 use brushwork_tuning::axis::AxisError;
-use brushwork_tuning::cascade::{CASCADE, Cascade};
+use brushwork_tuning::cascade::{CASCADE, Cascade, Manner};
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::experiment_guard::ExperimentGuard;
 use brushwork_tuning::joined::LeadingLaw;
@@ -45,7 +45,7 @@ impl Law for McpLaw {
     }
 
     fn tick(&self, state: &mut Cascade, gains: (&Gains, f64), setpoint: Setpoint, seen: &Seen<'_>) -> f64 {
-        state.tick(gains, (self.feed_forward, self.tick_s()), setpoint, seen)
+        state.tick(gains, Manner::of(self), setpoint, seen)
     }
 
     fn steady(&self, gains: (&Gains, f64), speed: f64, duty: f64) -> Cascade {
@@ -160,5 +160,70 @@ impl LawProbe for McpLaw {
 impl LeadingLaw for McpLaw {
     fn standing_in(rate_hz: u32) -> Self {
         Self { rate_hz, position_scale: 1.0, ..Self::default() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use brushwork_tuning::linear::{DiscretePlant, LoopPlant};
+    use brushwork_tuning::model::{Lag, Pid, PlantModel};
+    use brushwork_tuning::ticks::TickLoop;
+
+    const QPPS: f64 = 10_000.0;
+    const LAG: Lag = Lag { filter_s: 0.010, delay_ticks: 1.0 };
+    const MOTOR: PlantModel = PlantModel {
+        gain_counts_per_s: QPPS,
+        tau_s: 0.08,
+        coulomb_duty: 0.0,
+        load_duty: 0.0,
+        drive_limit: None,
+        brake_limit: None,
+        sag: 0.0,
+    };
+
+    fn pd(p: f64) -> Gains {
+        Gains { position: Some(Pid { p, i: 0.0, d: 0.03 * p }), ..Gains::default() }
+    }
+
+    /// How far the last quarter of a step swings over the first; it is too small to saturate.
+    fn growth(law: McpLaw, p: f64) -> f64 {
+        let mut twin = TickLoop::new(MOTOR, law, LAG, pd(p), QPPS).smooth();
+        let errors: Vec<f64> = (0..1200)
+            .map(|_| {
+                twin.tick(Setpoint::Position(1e-6, QPPS), 0.0);
+                (1e-6 - twin.motion.position).abs()
+            })
+            .collect();
+        let most = |part: &[f64]| part.iter().copied().fold(0.0, f64::max);
+        most(&errors[900..]) / most(&errors[..300])
+    }
+
+    /// Poles, responses and ticks are three computations of one loop.
+    #[test]
+    fn a_derivative_of_the_filtered_speed_is_in_poles_margins_and_ticks_alike() {
+        let plain = McpLaw { rate_hz: 625, ..McpLaw::default() };
+        let filtered = McpLaw { filters_derivative: true, ..plain };
+        let edge_of = |law: McpLaw| {
+            let plant = LoopPlant::new(DiscretePlant::of(&MOTOR, law.tick_s()), &law, LAG);
+            let (mut low, mut high) = (1.0, 1e4);
+            for _ in 0..50 {
+                let middle = f64::sqrt(low * high);
+                if plant.spectral_radius(&pd(middle), QPPS) < 1.0 { low = middle } else { high = middle }
+            }
+            let ms = plant.margins(&pd(low), QPPS).ms;
+            assert!(ms > 15.0, "{law:?}: at {low} the sensitivity is {ms}");
+            let (below, above) = (growth(law, 0.9 * low), growth(law, 1.1 * low));
+            assert!(below < 0.5 && above > 1.0, "{law:?}: {low} {below} {above}");
+            low
+        };
+        let edges = (edge_of(plain), edge_of(filtered));
+        assert!((edges.0 / edges.1).ln().abs() > 0.2, "{edges:?}");
+        let noise = |law: McpLaw| {
+            let plant = LoopPlant::new(DiscretePlant::of(&MOTOR, law.tick_s()), &law, LAG);
+            plant.margins(&pd(0.3 * edges.1), QPPS).noise_duty
+        };
+        let quieter = noise(filtered) / noise(plain);
+        assert!((0.02..0.4).contains(&quieter), "{quieter}");
     }
 }

@@ -16,7 +16,7 @@ fn eight_machines_with_absolute_encoders_come_out_as_they_did() {
     assert!(!table.contains_key("velocity"));
     for (task, accept, good, median) in [
         ("pd", (95.0, 100.0), (80.0, 100.0), (0.9, 1.20)),
-        ("pid", (95.0, 100.0), (30.0, 90.0), (0.9, 1.60)),
+        ("pid", (95.0, 100.0), (80.0, 100.0), (0.9, 1.60)),
         ("piv", (70.0, 100.0), (30.0, 90.0), (0.8, 1.70)),
     ] {
         let row = &table[task][0];
