@@ -44,7 +44,7 @@ impl Manner {
     #[must_use]
     pub fn of<L: Law>(law: &L) -> Self {
         let (feed_forward, tick_s) = (law.feed_forward(), law.tick_s());
-        Self { feed_forward, tick_s, filters_derivative: law.filters_derivative() }
+        Self { feed_forward, tick_s, filters_derivative: law.derivative_filter().is_some() }
     }
 }
 

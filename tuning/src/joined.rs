@@ -10,6 +10,7 @@ use crate::experiment_guard::ExperimentGuard;
 use crate::gains::Gains;
 use crate::law::{Ending, Facts, Law, Seen, Stamps};
 use crate::law_probe::LawProbe;
+use crate::model::DerivativeFilter;
 use crate::open_loop_record::Actuation;
 use crate::registers::{FeedForward, RegisterField, RegisterTable};
 use crate::request::Method;
@@ -132,8 +133,8 @@ impl<A: LeadingLaw, P: LawPart> Law for Both<A, P> {
         of_law!(self.feed_forward())
     }
 
-    fn filters_derivative(&self) -> bool {
-        of_law!(self.filters_derivative())
+    fn derivative_filter(&self) -> Option<DerivativeFilter> {
+        of_law!(self.derivative_filter())
     }
 
     fn duty_limit(&self) -> Option<DutyLimit> {
@@ -272,6 +273,10 @@ impl<A: LeadingLaw, P: LawPart> Law for Both<A, P> {
 
     fn is_rate_known(findings: &Self::Findings) -> bool {
         A::is_rate_known(findings)
+    }
+
+    fn derivative_noise(findings: &Self::Findings) -> Option<f64> {
+        A::derivative_noise(findings)
     }
 
     fn found(&self, findings: &Self::Findings, is_position: bool) -> Option<Self> {

@@ -157,6 +157,13 @@ pub struct LagFit {
     /// Whether the speed may not be filtered at all, so that the whole lag lies between the controller and the torque, where a loop on the position meets it too.
     #[serde(default)]
     pub may_lack_filter: bool,
+    /// How loud the duty of the loop was beside what the rounding of counts makes of it behind that lag.
+    #[serde(default = "as_rounding")]
+    pub loudness: f64,
+}
+
+fn as_rounding() -> f64 {
+    1.0
 }
 
 impl LagFit {
@@ -232,6 +239,7 @@ pub fn fit_lag<L: Law>(
         tau_scale,
         chi_square,
         may_lack_filter,
+        loudness: as_rounding(),
     })
 }
 

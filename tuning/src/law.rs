@@ -8,7 +8,7 @@ use crate::axis::AxisError;
 use crate::cause::Cause;
 use crate::duty_limiter::DutyLimit;
 use crate::gains::Gains;
-use crate::model::{Lag, Motion, PlantModel};
+use crate::model::{DerivativeFilter, Lag, Motion, PlantModel};
 use crate::open_loop_record::Actuation;
 use crate::setpoint::Setpoint;
 use serde::Serialize;
@@ -129,9 +129,9 @@ pub trait Law:
     }
     /// How much of the setpoint over QPPS is added to the duty: 1 is all of it.
     fn feed_forward(&self) -> f64;
-    /// Whether the derivative of a position sees the filtered speed of the velocity loop.
-    fn filters_derivative(&self) -> bool {
-        false
+    /// The filter of the speed that the derivative of a position sees, where it sees that of the velocity loop and no differences of counts.
+    fn derivative_filter(&self) -> Option<DerivativeFilter> {
+        None
     }
     /// The limit of the duty by which the current is held, where it is not the current itself that is limited.
     fn duty_limit(&self) -> Option<DutyLimit> {
@@ -213,6 +213,12 @@ pub trait Law:
     #[must_use]
     fn is_rate_known(_findings: &Self::Findings) -> bool {
         true
+    }
+
+    /// How much louder than the rounding of counts makes it the duty of a position's derivative was, where these findings say so.
+    #[must_use]
+    fn derivative_noise(_findings: &Self::Findings) -> Option<f64> {
+        None
     }
 
     /// Why a controller cannot be tuned as it is set, if so.

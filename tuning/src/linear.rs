@@ -94,7 +94,7 @@ impl LoopPlant {
         let speed = position.iter().zip(&slope).zip(&filter).map(|((p, s), f)| p * s * f).collect();
         let delay = omega.iter().map(|w| Complex::from_polar(1.0, -w * tick_s * lag.delay_ticks)).collect();
         let integral = slope.iter().map(|s| one / s).collect();
-        let (feed_forward, filters_derivative) = (law.feed_forward(), law.filters_derivative());
+        let (feed_forward, filters_derivative) = (law.feed_forward(), law.derivative_filter().is_some());
         Self {
             tick_s,
             feed_forward,

@@ -61,6 +61,23 @@ impl Lag {
     pub fn total_s(&self, tick_s: f64) -> f64 {
         self.filter_s + self.delay_ticks * tick_s
     }
+
+    /// As long, with so much of it a filter on the speed: the rest is a delay, which a loop on the position meets too.
+    #[must_use]
+    pub fn with_filter(&self, filter_s: f64, tick_s: f64) -> Self {
+        let total_s = self.total_s(tick_s);
+        let filter_s = filter_s.min(total_s);
+        Self { filter_s, delay_ticks: (total_s - filter_s) / tick_s }
+    }
+}
+
+/// The filter of the speed that the derivative of a position sees, by its mean delay.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DerivativeFilter {
+    /// As it was measured, s.
+    pub likely_s: f64,
+    /// The least that is still likely, s.
+    pub least_s: f64,
 }
 
 /// State of a [`PlantModel`].

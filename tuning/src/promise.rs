@@ -166,7 +166,19 @@ mod tests {
             sd_coulomb: 0.1 * sd,
             ramp: 1.0,
         };
-        (task, fit, LagFit { lag, worst, interval_s, tau_scale: 1.0, chi_square, may_lack_filter: false })
+        (
+            task,
+            fit,
+            LagFit {
+                lag,
+                worst,
+                interval_s,
+                tau_scale: 1.0,
+                chi_square,
+                may_lack_filter: false,
+                loudness: 1.0,
+            },
+        )
     }
 
     #[test]

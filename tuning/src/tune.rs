@@ -286,17 +286,7 @@ fn design<L: LawProbe>(
     };
     guard.progress("Measuring the lag of the loop");
     let task = settle_lag(guard, request, task, report)?;
-    // A filter is met by a loop's speed alone, a delay or a winding by its position too: where the record does not tell them apart, or a derivative sees the
-    // filter alone, the worst is the latter.
-    let may_lack_filter = report.lag.is_some_and(|lag| lag.may_lack_filter);
-    let is_position = request.method != Method::Velocity;
-    let filters_derivative =
-        matches!(request.method, Method::Pd | Method::Pid) && task.law.filters_derivative();
-    let is_worst_delay = is_position && may_lack_filter || filters_derivative;
-    let worst_lag = if is_worst_delay { filtered(task).worst_lag } else { task.worst_lag };
-    let is_filter_known = report.lag.is_some() && !may_lack_filter;
-    let task = if filters_derivative && !is_filter_known { filtered(task) } else { task };
-    let task = Task { worst_lag, ..task };
+    let task = with_known_filter(request, report, task);
     let task = if request.method == Method::Pid {
         with_backlash(guard, request, task, probe, report)?
     } else {
@@ -535,12 +525,12 @@ fn settle_lag<L: Law>(
         }
         measured => measured?,
     };
-    let Some((found, noise_factor)) = measured else {
+    let Some(found) = measured else {
         report.causes.push(Cause::LagUnknown);
         return Ok(task);
     };
     report.lag = Some(found);
-    Ok(with_lag(Task { noise_factor, ..task }, &found))
+    Ok(with_lag(Task { noise_factor: found.loudness, ..task }, &found))
 }
 
 /// The task of a loop that stays quiet where the controller filters nothing: one count must not throw its duty to and fro, which would tell nothing of the lag.
@@ -552,11 +542,28 @@ fn unfiltered<L: Law>(task: Task<L>) -> Task<L> {
     Task { noise_factor: task.noise_factor * louder.max(1.0), ..task }
 }
 
-/// The task of a loop on the position where the filter is not told from a delay, or may not be one: all that it takes is a delay of that loop, too.
-fn filtered<L: Law>(task: Task<L>) -> Task<L> {
+/// The task of a loop on the position: its speed alone meets a filter, all of it meets a delay. Where the record does not tell them apart, all is a delay at the
+/// worst. How smooth the duty of a derivative is tells its filter by itself.
+fn with_known_filter<L: Law>(request: &Request<L>, report: &Report<L>, task: Task<L>) -> Task<L> {
     let tick_s = task.law.tick_s();
-    let as_delay = |lag: Lag| Lag { filter_s: 0.0, delay_ticks: lag.delay_ticks + lag.filter_s / tick_s };
-    Task { lag: as_delay(task.lag), worst_lag: as_delay(task.worst_lag), ..task }
+    let has_derivative = matches!(request.method, Method::Pd | Method::Pid);
+    // The velocity loop's duty tells how loud it is beside a filter that was fitted, a derivative's own duty tells it by itself.
+    let own_noise = report.law.as_ref().filter(|_| has_derivative).and_then(L::derivative_noise);
+    let task = Task { noise_factor: own_noise.unwrap_or(task.noise_factor), ..task };
+    if let Some(seen) = task.law.derivative_filter().filter(|_| has_derivative) {
+        // A lag that was not measured is no shorter than the filter that was.
+        let least_s = if report.lag.is_some() { 0.0 } else { seen.likely_s };
+        let split = |lag: Lag, filter_s: f64| {
+            Lag { filter_s: lag.filter_s.max(least_s), ..lag }.with_filter(filter_s, tick_s)
+        };
+        let (lag, worst_lag) = (split(task.lag, seen.likely_s), split(task.worst_lag, seen.least_s));
+        return Task { lag, worst_lag, ..task };
+    }
+    let may_lack_filter = report.lag.is_some_and(|lag| lag.may_lack_filter);
+    if request.method == Method::Velocity || !may_lack_filter {
+        return task;
+    }
+    Task { worst_lag: task.worst_lag.with_filter(0.0, tick_s), ..task }
 }
 
 fn with_lag<L: Law>(task: Task<L>, found: &LagFit) -> Task<L> {

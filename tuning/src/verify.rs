@@ -99,7 +99,7 @@ pub fn measure_lag<L: Law>(
     gains: &Gains,
     sd_ln_tau: f64,
     excitation: Excitation,
-) -> Result<Option<(LagFit, f64)>, Cause> {
+) -> Result<Option<LagFit>, Cause> {
     let (from_s, to_s) = match excitation {
         Excitation::Free => run_steps(guard, task, gains)?,
         Excitation::Window(width) => run_strokes(guard, task, gains, width)?,
@@ -115,8 +115,8 @@ pub fn measure_lag<L: Law>(
     let settled = from_s + (2.5 * task.plant.tau_s).clamp(0.3, 2.0);
     let measured = plateau_activity(&ClosedLoopRecord::of(guard, settled, to_s));
     // Readings of the duty are whole steps of 1/32767, and a quiet loop tells nothing about its noise.
-    let factor = if noise > 0.004 { (measured / noise).clamp(0.9, 3.0) } else { 1.0 };
-    Ok(Some((found, factor)))
+    let loudness = if noise > 0.004 { (measured / noise).clamp(0.9, 3.0) } else { 1.0 };
+    Ok(Some(LagFit { loudness, ..found }))
 }
 
 /// Whether an axis stays where it is while it is off, as far as that matters: one that its load moves would leave its travel between two strokes.
@@ -325,7 +325,10 @@ fn leave_room<L: Law>(
         return Ok(None);
     };
     let is_odd = report.lag.is_some_and(|lag| lag.is_unexplained());
-    let found = match headroom(guard, task, &design.gains, (request.excitation, is_odd)) {
+    // What made the loop of the lag louder than its rounding, by the filter that was fitted, may be heard beside the raised gains too.
+    let loudness = report.lag.map_or(task.noise_factor, |lag| lag.loudness.max(task.noise_factor));
+    let heard = Task { noise_factor: loudness, ..*task };
+    let found = match headroom(guard, &heard, &design.gains, (request.excitation, is_odd)) {
         // Too little room for it: nothing was heard.
         Err(Cause::TravelLimit) => return guard.come_to_rest().map(|()| None),
         found => found?,

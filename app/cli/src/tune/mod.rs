@@ -149,7 +149,7 @@ fn session(
         EncoderArg::AbsoluteWrapping => EncoderClass::AbsoluteWrapping,
     });
     let target = Target { motor: motor(args), encoder, stream: controller.client.stream };
-    let sequence = Sequence::new(Work::Tune(request(args, wanted)), target, ArmScope::CommandLine);
+    let sequence = Sequence::new(Work::Tune(Box::new(request(args, wanted))), target, ArmScope::CommandLine);
     let mut sequence = sequence.begun_again_when_late();
     let (ended, stopped) = match carry_out(&mut sequence, controller, interrupt) {
         Ok(ended) => ended,

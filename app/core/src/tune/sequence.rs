@@ -29,7 +29,7 @@ const LATE_RUNS: u8 = 3;
 #[derive(Clone, Debug)]
 pub enum Work {
     /// Identifies the motor and designs gains.
-    Tune(TuneRequest),
+    Tune(Box<TuneRequest>),
     /// Tries gains.
     Try(Box<TrialRequest>),
     /// Puts back what a run left when its link was lost.
@@ -281,7 +281,7 @@ impl Sequence {
             }
             Stage::Preparing => jobs::prepare(self.target, subject, &self.setup, &keeper),
             Stage::Running => match &self.work {
-                Work::Tune(request) => jobs::run(self.target, *request, &self.found, &self.live),
+                Work::Tune(request) => jobs::run(self.target, **request, &self.found, &self.live),
                 Work::Try(wanted) => jobs::trial(self.target, **wanted, &self.tried, &self.live),
                 Work::PutBack => return None,
             },

@@ -314,7 +314,7 @@ impl Tuning {
     pub fn start(&mut self, which: Loop, motor: Motor, stream: Option<Stream>) -> Result<(), TuningMessage> {
         self.begin(which, motor, stream, |panel, motor| {
             let setting = Setting { level: panel.level(), ..panel.setting };
-            Ok(Work::Tune(setting.request(motor)))
+            Ok(Work::Tune(Box::new(setting.request(motor))))
         })
     }
 

@@ -6,8 +6,8 @@
 use crate::probed::{Probed, QPPS, RATES_HZ, gains};
 use crate::registers::{McpLaw, McpWrite, PositionRegisters};
 use brushwork_tuning::cause::Cause;
-use brushwork_tuning::experiment_guard::Point;
 use brushwork_tuning::law::Law;
+use brushwork_tuning::model::DerivativeFilter;
 
 /// Duty above the starting one at which the motor creeps.
 const CREEP_DUTY: f64 = 0.04;
@@ -36,9 +36,18 @@ const P_TOLERANCE: f64 = 0.06;
 const MOST_TICK_S: f64 = 0.02;
 const LEAST_ROUGH: f64 = 0.06;
 const ENOUGH_FOR_ROUGHNESS: usize = 12;
+/// The speed at a reading is that of so many readings before and after it: of few, or of more, whose late stamps matter less.
+const AROUND: [usize; 3] = [1, 3, 6];
+/// By how much more duty the motor creeps again where whole counts told nothing or the duty was smooth, as shares of that above the starting one: polls that keep in
+/// step with the counts see the same of them each time, at one speed and not at another.
+const AGAIN: [f64; 2] = [0.35, 0.7];
 /// D's duty is that of a filtered speed below such a share of what differences of whole counts make: a filter of one tick leaves three tenths of it, twenty readings
 /// spread by a third.
-pub(crate) const FILTERED: f64 = 0.4;
+const FILTERED: f64 = 0.4;
+/// Harmonics of the rounding that are summed, of which the last are a thousandth, and how a filter is searched for: the least that it lets through in a tick, as a share.
+const HARMONICS: u32 = 60;
+const LEAST_SHARE_OF_TICK: f64 = 0.01;
+const HALVINGS: u32 = 30;
 /// A finding within such a factor of one tick or of one second is taken to be that. D may make a pulse of each count, of which polls see few.
 const KNOWN_WITHIN: f64 = 1.7;
 
@@ -48,6 +57,8 @@ pub(crate) struct DerivativeFound {
     pub seconds: f64,
     /// How rough its duty is over what differences of whole counts make it.
     pub roughness: Option<f64>,
+    /// The filter on the speed that it sees; `None` where it sees the counts of each tick, and none that is known where nothing told.
+    pub filter: Option<DerivativeFilter>,
 }
 
 /// What D multiplies, and whether it sees a filtered speed; `None` where there is no room to creep, or it was not read well.
@@ -66,12 +77,12 @@ pub(crate) fn derivative_under<L: Law>(
     };
     guard.progress("Reading what D takes from the duty while the motor creeps");
     let duty = start_duty + CREEP_DUTY;
-    let mut creeps = |direction: f64, d: f64| {
+    let mut creeps = |direction: f64, duty: f64, d: f64| {
         let turned = creep.run(guard, (direction, duty), scale, d);
         coast(guard)?;
         turned
     };
-    let Some(plain) = creeps(creep.direction, 0.0)? else { return Ok(None) };
+    let Some(plain) = creeps(creep.direction, duty, 0.0)? else { return Ok(None) };
     if (plain.missing_duty / duty).abs() > P_TOLERANCE {
         return Ok(None);
     }
@@ -80,12 +91,23 @@ pub(crate) fn derivative_under<L: Law>(
     let mut direction = -creep.direction;
     for d in [per_second, per_second * rate_hz] {
         let d = d.round().clamp(1.0, f64::from(i32::MAX));
-        let Some(turned) = creeps(direction, d)? else { return Ok(None) };
+        let Some(turned) = creeps(direction, duty, d)? else { return Ok(None) };
         let found = turned.missing_duty * QPPS * scale / (d * turned.speed);
         if turned.missing_duty > LEAST_SHARE * TAKEN_DUTY.min(MOST_KICK * plain.speed / rate_hz) {
             // A D per tick tells the rate of the loop itself.
             let rate_hz = if found < MOST_TICK_S { 1.0 / found } else { rate_hz };
-            return Ok(Some(DerivativeFound { seconds: found, roughness: turned.roughness(rate_hz) }));
+            let mut told = turned.told(rate_hz);
+            for more in AGAIN {
+                if told.is_some_and(|told| told.times > 1 || told.roughness >= FILTERED) {
+                    break;
+                }
+                direction = -direction;
+                let again = creeps(direction, duty + more * CREEP_DUTY, d)?;
+                told = Told::rougher(told, again.and_then(|turned| turned.told(rate_hz)));
+            }
+            let filter = told.map_or(Some(UNKNOWN), |told| told.filter);
+            let roughness = told.map(|told| told.roughness);
+            return Ok(Some(DerivativeFound { seconds: found, roughness, filter }));
         }
         direction = -direction;
     }
@@ -140,7 +162,71 @@ struct Turned {
     speeds: Vec<f64>,
 }
 
+/// What one reading of a creep has shown, in its direction.
+#[derive(Clone, Copy, Debug)]
+struct Reading {
+    t: f64,
+    counts: f64,
+    /// By how much the duty is less than P makes it; `None` where it was not read.
+    missing_duty: Option<f64>,
+}
+
+/// By how much the duty that is missing scatters about what the speed takes, as variance, and the speeds, counts/s: by that number of readings on either side of which
+/// it scatters less, since late stamps make a speed of few readings wrong, and a speed that changes one of many. `taken` is the duty over the speed.
+fn scatter(readings: &[Reading], taken: f64) -> (f64, Vec<f64>) {
+    let by = |around: usize| {
+        let windows = readings.windows(2 * around + 1);
+        let (rests, speeds): (Vec<f64>, Vec<f64>) = windows
+            .filter_map(|window| {
+                let speed = slope(window);
+                window[around].missing_duty.map(|missing| ((missing - taken * speed).powi(2), speed))
+            })
+            .unzip();
+        (rests.iter().sum::<f64>() / rests.len().max(1) as f64, speeds)
+    };
+    let [first, rest @ ..] = AROUND.map(by);
+    rest.into_iter()
+        .filter(|more| more.1.len() >= ENOUGH_FOR_ROUGHNESS)
+        .fold(first, |least, more| if more.0 < least.0 { more } else { least })
+}
+
+/// Counts/s of the straight line that fits best.
+fn slope(readings: &[Reading]) -> f64 {
+    let n = readings.len() as f64;
+    let (t, counts) = readings.iter().fold((0.0, 0.0), |sum, r| (sum.0 + r.t / n, sum.1 + r.counts / n));
+    let along = readings.iter().map(|r| (r.t - t) * (r.counts - counts)).sum::<f64>();
+    along / readings.iter().map(|r| (r.t - t).powi(2)).sum::<f64>().max(1e-12)
+}
+
+/// A D of which nothing told whether it sees a filtered speed: what the loop loses may all be a delay.
+const UNKNOWN: DerivativeFilter = DerivativeFilter { likely_s: 0.0, least_s: 0.0 };
+
+/// What creeps have told of the speed that D sees.
+#[derive(Clone, Copy, Debug)]
+struct Told {
+    /// How rough its duty is over what differences of whole counts make it.
+    roughness: f64,
+    filter: Option<DerivativeFilter>,
+    /// How many creeps told it.
+    times: u32,
+}
+
+impl Told {
+    /// The rougher of two.
+    fn rougher(one: Option<Self>, other: Option<Self>) -> Option<Self> {
+        let (Some(first), Some(second)) = (one, other) else { return one.or(other) };
+        let rougher = if first.roughness >= second.roughness { first } else { second };
+        Some(Self { times: first.times + second.times, ..rougher })
+    }
+}
+
 impl Turned {
+    /// What it tells; `None` where whole counts make nearly no difference.
+    fn told(&self, rate_hz: f64) -> Option<Told> {
+        let roughness = self.roughness(rate_hz)?;
+        Some(Told { roughness, filter: self.filter(rate_hz), times: 1 })
+    }
+
     /// How rough D's duty is over what differences of whole counts make it: 1 where D sees the counts of a tick, much less where it sees a filtered speed. `None` where whole
     /// counts make nearly no difference.
     fn roughness(&self, rate_hz: f64) -> Option<f64> {
@@ -151,6 +237,42 @@ impl Turned {
         let is_told = expected > LEAST_ROUGH && self.speeds.len() >= ENOUGH_FOR_ROUGHNESS;
         is_told.then(|| self.scatter / (expected * of_a_count.powi(2)))
     }
+
+    /// The filter of the speed that D sees: as smooth as it makes D's duty, and the least with which twice the scatter of so many readings may hide.
+    fn filter(&self, rate_hz: f64) -> Option<DerivativeFilter> {
+        self.roughness(rate_hz).filter(|rough| *rough < FILTERED)?;
+        let of_a_count = self.missing_duty * rate_hz / self.speed;
+        let counts = self.scatter / of_a_count.powi(2);
+        let n = self.speeds.len() as f64;
+        let delay_s = |counts: f64| {
+            let rough = |share: f64| {
+                self.speeds.iter().map(|speed| filtered(share, speed / rate_hz)).sum::<f64>() / n
+            };
+            let (mut low, mut high) = (LEAST_SHARE_OF_TICK, 1.0);
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (low + high);
+                if rough(middle) < counts { low = middle } else { high = middle }
+            }
+            (1.0 - high) / high / rate_hz
+        };
+        Some(DerivativeFilter {
+            likely_s: delay_s(counts),
+            least_s: delay_s(counts * (1.0 + 2.0 * (2.0 / n).sqrt())),
+        })
+    }
+}
+
+/// Variance, in counts squared, of the whole counts of a tick behind a filter that lets so much of a change through in a tick, at a steady speed of so many counts in a
+/// tick: rounding is a sawtooth over the counts, of which the filter passes each harmonic by itself.
+fn filtered(share: f64, per_tick: f64) -> f64 {
+    let kept = 1.0 - share;
+    let harmonic = |k: u32| {
+        let turn = std::f64::consts::TAU * f64::from(k) * per_tick;
+        let differences = 2.0 * (1.0 - turn.cos());
+        let passed = share.powi(2) / (1.0 - 2.0 * kept * turn.cos() + kept.powi(2));
+        differences * passed / (2.0 * (std::f64::consts::PI * f64::from(k)).powi(2))
+    };
+    (1..=HARMONICS).map(harmonic).sum()
 }
 
 impl Creep {
@@ -188,32 +310,24 @@ impl Creep {
                 break;
             }
         }
-        let seen = guard.points.get(first..).unwrap_or_default();
-        let settled = || seen.iter().filter(|point| point.t > start_s + SETTLED_S);
-        let (Some(begin), Some(end)) = (settled().next(), settled().next_back()) else { return Ok(None) };
-        let came = direction * (end.counts - begin.counts);
-        let missing: Vec<f64> = settled()
-            .filter_map(|point| {
+        let seen = guard.points.get(first..).unwrap_or_default().iter();
+        let readings: Vec<Reading> = seen
+            .filter(|point| point.t > start_s + SETTLED_S)
+            .map(|point| {
                 let by_p = p * direction * (target - point.counts) / (scale * QPPS);
-                point.duty.map(|(_, read)| by_p - direction * read)
+                let missing_duty = point.duty.map(|(_, read)| by_p - direction * read);
+                Reading { t: point.t, counts: direction * point.counts, missing_duty }
             })
             .collect();
+        let (Some(begin), Some(end)) = (readings.first(), readings.last()) else { return Ok(None) };
+        let came = end.counts - begin.counts;
+        let missing: Vec<f64> = readings.iter().filter_map(|reading| reading.missing_duty).collect();
         if missing.len() < LEAST_READINGS || came < LEAST_COUNTS || end.t <= begin.t {
             return Ok(None);
         }
         let missing_duty = missing.iter().sum::<f64>() / missing.len() as f64;
         let speed = came / (end.t - begin.t);
-        let settled: Vec<Point> = settled().copied().collect();
-        let (mut scatter, mut speeds) = (0.0, Vec::new());
-        for around in settled.windows(3) {
-            let Some((_, read)) = around[1].duty else { continue };
-            let by_p = p * direction * (target - around[1].counts) / (scale * QPPS);
-            let here =
-                direction * (around[2].counts - around[0].counts) / (around[2].t - around[0].t).max(1e-6);
-            scatter += (by_p - direction * read - missing_duty * here / speed).powi(2);
-            speeds.push(here);
-        }
-        let scatter = scatter / speeds.len().max(1) as f64;
+        let (scatter, speeds) = scatter(&readings, missing_duty / speed);
         Ok(Some(Turned { speed, missing_duty, scatter, speeds }))
     }
 }
@@ -240,8 +354,77 @@ mod tests {
         let rough = of(0.25 * of_a_count.powi(2)).roughness(300.0).unwrap();
         assert!((rough - 1.0).abs() < 1e-9, "{rough}");
         assert!(of(0.02 * of_a_count.powi(2)).roughness(300.0).unwrap() < FILTERED);
+        assert!(of(0.25 * of_a_count.powi(2)).filter(300.0).is_none());
         let whole = Turned { speeds: vec![600.0; 20], ..of(0.0) };
         assert_eq!(whole.roughness(300.0), None, "two counts in every tick tell nothing");
+    }
+
+    /// A filter of a tick or some, fed with whole counts: its delay is read off what it leaves of them.
+    #[test]
+    fn the_filter_of_a_derivative_is_read_off_the_scatter_of_its_duty() {
+        for (filter_s, rate_hz, speed) in [
+            (0.0032, 625.0, 331.0),
+            (0.0108, 625.0, 571.0),
+            (0.0026, 300.0, 6_061.0),
+            (0.0032, 625.0, 13_421.0),
+        ] {
+            let share = 1.0 / (1.0 + filter_s * rate_hz);
+            let (mut seen, mut last, mut sum, mut squares) = (speed / rate_hz, 0.0, 0.0, 0.0);
+            let ticks = 50_000;
+            for n in 1..=ticks {
+                let count = (f64::from(n) * speed / rate_hz).floor();
+                seen += share * (count - last - seen);
+                last = count;
+                sum += seen;
+                squares += seen * seen;
+            }
+            let mean = sum / f64::from(ticks);
+            let counts = squares / f64::from(ticks) - mean * mean;
+            let missing_duty = 0.01;
+            let of_a_count = missing_duty * rate_hz / speed;
+            let turned =
+                Turned { speed, missing_duty, scatter: counts * of_a_count.powi(2), speeds: vec![speed; 28] };
+            let found = turned.filter(rate_hz).expect("a filter");
+            assert!((found.likely_s / filter_s - 1.0).abs() < 0.05, "{filter_s} at {rate_hz} Hz: {found:?}");
+            assert!(
+                (0.6..0.95).contains(&(found.least_s / filter_s)),
+                "{filter_s} at {rate_hz} Hz: {found:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn one_smooth_duty_is_looked_at_again_and_the_rougher_one_counts() {
+        let told = |roughness: f64| {
+            Some(Told { roughness, filter: (roughness < FILTERED).then_some(UNKNOWN), times: 1 })
+        };
+        let both = Told::rougher(told(0.02), told(1.1)).expect("both told");
+        assert!(both.filter.is_none() && both.times == 2, "polls in step with the counts: {both:?}");
+        assert_eq!(Told::rougher(told(0.1), None).map(|told| told.times), Some(1));
+        assert!(Told::rougher(None, None).is_none());
+    }
+
+    #[test]
+    fn stamps_of_a_busy_computer_do_not_make_a_filtered_derivative_rough() {
+        // 13,300 counts/s at 625 Hz, each seventh stamp 1.8 ms late, as a run on a busy computer had one; D sees a smooth speed, or the difference of two ticks.
+        let (speed, rate_hz, taken) = (13_300.0, 625.0, 0.012 / 13_300.0);
+        let readings = |sees_ticks: bool| -> Vec<Reading> {
+            let reading = |n: usize| {
+                let at = 0.0101 * n as f64;
+                let late = if n % 7 == 3 { 0.0018 } else { 0.0003 * (0.618 * n as f64).fract() };
+                let tick = (at * rate_hz).floor();
+                let ticked = (tick / rate_hz * speed).floor() - ((tick - 1.0) / rate_hz * speed).floor();
+                let seen = if sees_ticks { ticked * rate_hz } else { speed };
+                Reading { t: at + late, counts: (at * speed).floor(), missing_duty: Some(taken * seen) }
+            };
+            (0..30).map(reading).collect()
+        };
+        let rough = |sees_ticks: bool| {
+            let (scatter, speeds) = scatter(&readings(sees_ticks), taken);
+            Turned { speed, missing_duty: 0.012, scatter, speeds }.roughness(rate_hz).unwrap()
+        };
+        assert!(rough(true) > 1.5 * FILTERED, "{}", rough(true));
+        assert!(rough(false) < FILTERED, "{}", rough(false));
     }
 
     #[test]

@@ -13,7 +13,7 @@ use brushwork_tuning::experiment_guard::ExperimentGuard;
 use brushwork_tuning::joined::LeadingLaw;
 use brushwork_tuning::law::{Ending, Facts, Law, Seen};
 use brushwork_tuning::law_probe::LawProbe;
-use brushwork_tuning::model::Gains;
+use brushwork_tuning::model::{DerivativeFilter, Gains};
 use brushwork_tuning::setpoint::Setpoint;
 use brushwork_tuning::tune::Method;
 
@@ -36,8 +36,8 @@ impl Law for McpLaw {
         self.rate_hz
     }
 
-    fn filters_derivative(&self) -> bool {
-        self.filters_derivative
+    fn derivative_filter(&self) -> Option<DerivativeFilter> {
+        self.derivative_filter
     }
 
     fn feed_forward(&self) -> f64 {
@@ -128,6 +128,10 @@ impl Law for McpLaw {
         findings.is_rate_known()
     }
 
+    fn derivative_noise(findings: &LawFindings) -> Option<f64> {
+        findings.derivative_noise()
+    }
+
     fn keeping(registers: &McpRegisters) -> Vec<McpWrite> {
         Self::writes(registers, true)
     }
@@ -203,7 +207,8 @@ mod tests {
     #[test]
     fn a_derivative_of_the_filtered_speed_is_in_poles_margins_and_ticks_alike() {
         let plain = McpLaw { rate_hz: 625, ..McpLaw::default() };
-        let filtered = McpLaw { filters_derivative: true, ..plain };
+        let filtered =
+            McpLaw { derivative_filter: Some(DerivativeFilter { likely_s: 0.004, least_s: 0.003 }), ..plain };
         let edge_of = |law: McpLaw| {
             let plant = LoopPlant::new(DiscretePlant::of(&MOTOR, law.tick_s()), &law, LAG);
             let (mut low, mut high) = (1.0, 1e4);

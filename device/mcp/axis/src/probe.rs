@@ -4,13 +4,14 @@
 //! back (command 48) then says what that gain is multiplied with: whether the setpoint's share of QPPS is added, the scale of P, how
 //! fast I sums up, the scale of the position gains. The motor stays where it is, so this needs no travel.
 
-use crate::derivative::{FILTERED, derivative_under, known_derivative_s};
+use crate::derivative::{derivative_under, known_derivative_s};
 use crate::probed::{Probed, QPPS, RATES_HZ, gains};
 use crate::registers::{McpLaw, McpWrite, PositionRegisters, VELOCITY_SCALE};
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::experiment_guard::{ExperimentGuard, Point};
 use brushwork_tuning::law::Law;
 use brushwork_tuning::law_probe::speed_step;
+use brushwork_tuning::model::DerivativeFilter;
 use brushwork_tuning::tune::Method;
 use serde::{Deserialize, Serialize};
 
@@ -66,6 +67,9 @@ pub struct LawFindings {
     /// How rough the duty of that D is over what differences of whole counts make it, where that could be read.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub derivative_roughness: Option<f64>,
+    /// The filter on the speed that this D sees, where its duty is too smooth for counts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub derivative_filter: Option<DerivativeFilter>,
     /// The step of the unfiltered speed, counts/s, where the sums do not tell the rate of the loop.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_step: Option<f64>,
@@ -108,7 +112,7 @@ impl LawFindings {
             velocity_scale,
             integral_scale,
             derivative_s: None,
-            filters_derivative: self.derivative_roughness.is_some_and(|rough| rough < FILTERED),
+            derivative_filter: self.derivative_filter,
         };
         let derivative_s = self.derivative_s.map(|found| known_derivative_s(found, &law));
         Some(McpLaw { derivative_s: derivative_s.filter(|found| *found != law.derivative_s()), ..law })
@@ -167,6 +171,13 @@ impl LawFindings {
     #[must_use]
     pub fn is_rate_known(&self) -> bool {
         self.speed_step.is_some() || self.sums_per_s >= LEAST_TICKS_PER_S
+    }
+
+    /// How much louder than rounding makes it the duty of a position D was, where it was read. What a filter leaves of it is what the filter is known by.
+    #[must_use]
+    pub fn derivative_noise(&self) -> Option<f64> {
+        let rough = self.derivative_roughness?;
+        Some(if self.derivative_filter.is_some() { 1.0 } else { rough.sqrt().max(1.0) })
     }
 
     /// Whether the setpoint's share of QPPS is added; `None` where it is neither whole nor nothing.
@@ -278,7 +289,8 @@ pub fn probe_law<L: Law>(
     {
         let derivative = derivative_under(guard, start_duty, scale, held_limits, f64::from(law.rate_hz))?;
         found.derivative_s = derivative.as_ref().map(|derivative| derivative.seconds);
-        found.derivative_roughness = derivative.and_then(|derivative| derivative.roughness);
+        found.derivative_roughness = derivative.as_ref().and_then(|derivative| derivative.roughness);
+        found.derivative_filter = derivative.and_then(|derivative| derivative.filter);
         guard.set(gains(0.0, 0.0))?;
     }
     Ok(Some(found))
@@ -440,6 +452,22 @@ mod tests {
         ] {
             assert_eq!(unknown.law(&usual, true), None, "{unknown:?}");
         }
+    }
+
+    #[test]
+    fn a_filtered_derivative_is_as_loud_as_its_filter_leaves_it_and_another_as_loud_as_it_was() {
+        let of = |roughness: Option<f64>, filter: Option<DerivativeFilter>| {
+            let found = LawFindings {
+                derivative_roughness: roughness,
+                derivative_filter: filter,
+                ..LawFindings::default()
+            };
+            found.derivative_noise()
+        };
+        assert_eq!(of(Some(0.05), Some(DerivativeFilter { likely_s: 0.01, least_s: 0.008 })), Some(1.0));
+        assert_eq!(of(Some(0.8), None), Some(1.0));
+        assert_eq!(of(Some(4.0), None), Some(2.0), "a variance");
+        assert_eq!(of(None, None), None);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use brushwork_tuning::axis::AxisError;
 use brushwork_tuning::law::Law;
-use brushwork_tuning::model::{Gains, Pid};
+use brushwork_tuning::model::{DerivativeFilter, Gains, Pid};
 use serde::{Deserialize, Serialize};
 
 /// Wire value of a velocity gain of 1 (MCP manual, command 28).
@@ -32,14 +32,9 @@ pub struct McpLaw {
     /// Seconds that a position D of 1 multiplies the speed with, where that is not what I counts by.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub derivative_s: Option<f64>,
-    /// Whether a position D sees the filtered speed of the velocity loop, and no differences of counts.
-    #[serde(default, skip_serializing_if = "is_not")]
-    pub filters_derivative: bool,
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
-fn is_not(value: &bool) -> bool {
-    !*value
+    /// The filter of the speed that a position D sees, where it sees that of the velocity loop and no differences of counts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub derivative_filter: Option<DerivativeFilter>,
 }
 
 fn usual_scale() -> f64 {
@@ -90,7 +85,7 @@ impl Default for McpLaw {
             velocity_scale: VELOCITY_SCALE,
             integral_scale: VELOCITY_SCALE,
             derivative_s: None,
-            filters_derivative: false,
+            derivative_filter: None,
         }
     }
 }
