@@ -213,6 +213,16 @@ impl PlantModel {
 mod tests {
     use super::*;
 
+    #[test]
+    fn a_lag_with_a_known_filter_is_as_long_and_what_is_not_proven_a_filter_is_a_delay() {
+        let lag = Lag { filter_s: 0.004, delay_ticks: 1.5 };
+        for (filter_s, of_it_s) in [(0.0, 0.0), (0.006, 0.006), (0.020, 0.007)] {
+            let split = lag.with_filter(filter_s, 0.002);
+            assert!((split.total_s(0.002) - lag.total_s(0.002)).abs() < 1e-12, "{split:?}");
+            assert!((split.filter_s - of_it_s).abs() < 1e-12 && split.delay_ticks >= 0.0, "{split:?}");
+        }
+    }
+
     fn plant() -> PlantModel {
         PlantModel {
             gain_counts_per_s: 10_000.0,

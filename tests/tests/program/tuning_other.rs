@@ -299,6 +299,11 @@ fn the_position_loop_of_another_controller_is_measured_and_not_guessed() {
         let of_d_s = if manner.derives_ticks { 1.0 / manner.tick_hz } else { 1.0 };
         let is_asked = method != Method::Piv;
         assert_eq!(law.derivative_filter.is_some(), manner.derivative_filter_s > 0.0, "{law:?} {case}");
+        if let Some(filter) = law.derivative_filter {
+            let of_it = manner.derivative_filter_s;
+            assert!(filter.least_s > 0.3 * of_it && filter.least_s < of_it, "{filter:?} {case}");
+            assert!(filter.likely_s > 0.5 * of_it && filter.likely_s < 1.5 * of_it, "{filter:?} {case}");
+        }
         assert!(!is_asked || (law.derivative_s() / of_d_s - 1.0).abs() < 0.04, "{law:?} {case}");
     }
 }

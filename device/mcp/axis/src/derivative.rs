@@ -6,8 +6,10 @@
 use crate::probed::{Probed, QPPS, RATES_HZ, gains};
 use crate::registers::{McpLaw, McpWrite, PositionRegisters};
 use brushwork_tuning::cause::Cause;
+use brushwork_tuning::experiment_guard::Point;
 use brushwork_tuning::law::Law;
 use brushwork_tuning::model::DerivativeFilter;
+use brushwork_tuning::settle::slope;
 
 /// Duty above the starting one at which the motor creeps.
 const CREEP_DUTY: f64 = 0.04;
@@ -162,24 +164,15 @@ struct Turned {
     speeds: Vec<f64>,
 }
 
-/// What one reading of a creep has shown, in its direction.
-#[derive(Clone, Copy, Debug)]
-struct Reading {
-    t: f64,
-    counts: f64,
-    /// By how much the duty is less than P makes it; `None` where it was not read.
-    missing_duty: Option<f64>,
-}
-
 /// By how much the duty that is missing scatters about what the speed takes, as variance, and the speeds, counts/s: by that number of readings on either side of which
-/// it scatters less, since late stamps make a speed of few readings wrong, and a speed that changes one of many. `taken` is the duty over the speed.
-fn scatter(readings: &[Reading], taken: f64) -> (f64, Vec<f64>) {
+/// it scatters less, since late stamps make a speed of few readings wrong, and a speed that changes one of many. `taken` is the duty over the speed in a direction.
+fn scatter(readings: &[Point], missing: impl Fn(&Point) -> Option<f64>, taken: f64) -> (f64, Vec<f64>) {
     let by = |around: usize| {
         let windows = readings.windows(2 * around + 1);
         let (rests, speeds): (Vec<f64>, Vec<f64>) = windows
             .filter_map(|window| {
-                let speed = slope(window);
-                window[around].missing_duty.map(|missing| ((missing - taken * speed).powi(2), speed))
+                let speed = slope(window)?;
+                missing(&window[around]).map(|missing| ((missing - taken * speed).powi(2), speed))
             })
             .unzip();
         (rests.iter().sum::<f64>() / rests.len().max(1) as f64, speeds)
@@ -188,14 +181,6 @@ fn scatter(readings: &[Reading], taken: f64) -> (f64, Vec<f64>) {
     rest.into_iter()
         .filter(|more| more.1.len() >= ENOUGH_FOR_ROUGHNESS)
         .fold(first, |least, more| if more.0 < least.0 { more } else { least })
-}
-
-/// Counts/s of the straight line that fits best.
-fn slope(readings: &[Reading]) -> f64 {
-    let n = readings.len() as f64;
-    let (t, counts) = readings.iter().fold((0.0, 0.0), |sum, r| (sum.0 + r.t / n, sum.1 + r.counts / n));
-    let along = readings.iter().map(|r| (r.t - t) * (r.counts - counts)).sum::<f64>();
-    along / readings.iter().map(|r| (r.t - t).powi(2)).sum::<f64>().max(1e-12)
 }
 
 /// A D of which nothing told whether it sees a filtered speed: what the loop loses may all be a delay.
@@ -311,23 +296,20 @@ impl Creep {
             }
         }
         let seen = guard.points.get(first..).unwrap_or_default().iter();
-        let readings: Vec<Reading> = seen
-            .filter(|point| point.t > start_s + SETTLED_S)
-            .map(|point| {
-                let by_p = p * direction * (target - point.counts) / (scale * QPPS);
-                let missing_duty = point.duty.map(|(_, read)| by_p - direction * read);
-                Reading { t: point.t, counts: direction * point.counts, missing_duty }
-            })
-            .collect();
+        let readings: Vec<Point> = seen.filter(|point| point.t > start_s + SETTLED_S).copied().collect();
         let (Some(begin), Some(end)) = (readings.first(), readings.last()) else { return Ok(None) };
-        let came = end.counts - begin.counts;
-        let missing: Vec<f64> = readings.iter().filter_map(|reading| reading.missing_duty).collect();
-        if missing.len() < LEAST_READINGS || came < LEAST_COUNTS || end.t <= begin.t {
+        let came = direction * (end.counts - begin.counts);
+        let missing = |point: &Point| {
+            let by_p = p * direction * (target - point.counts) / (scale * QPPS);
+            point.duty.map(|(_, read)| by_p - direction * read)
+        };
+        let all: Vec<f64> = readings.iter().filter_map(missing).collect();
+        if all.len() < LEAST_READINGS || came < LEAST_COUNTS || end.t <= begin.t {
             return Ok(None);
         }
-        let missing_duty = missing.iter().sum::<f64>() / missing.len() as f64;
+        let missing_duty = all.iter().sum::<f64>() / all.len() as f64;
         let speed = came / (end.t - begin.t);
-        let (scatter, speeds) = scatter(&readings, missing_duty / speed);
+        let (scatter, speeds) = scatter(&readings, missing, direction * missing_duty / speed);
         Ok(Some(Turned { speed, missing_duty, scatter, speeds }))
     }
 }
@@ -408,19 +390,28 @@ mod tests {
     fn stamps_of_a_busy_computer_do_not_make_a_filtered_derivative_rough() {
         // 13,300 counts/s at 625 Hz, each seventh stamp 1.8 ms late, as a run on a busy computer had one; D sees a smooth speed, or the difference of two ticks.
         let (speed, rate_hz, taken) = (13_300.0, 625.0, 0.012 / 13_300.0);
-        let readings = |sees_ticks: bool| -> Vec<Reading> {
+        let readings = |sees_ticks: bool| -> Vec<Point> {
             let reading = |n: usize| {
                 let at = 0.0101 * n as f64;
                 let late = if n % 7 == 3 { 0.0018 } else { 0.0003 * (0.618 * n as f64).fract() };
                 let tick = (at * rate_hz).floor();
                 let ticked = (tick / rate_hz * speed).floor() - ((tick - 1.0) / rate_hz * speed).floor();
                 let seen = if sees_ticks { ticked * rate_hz } else { speed };
-                Reading { t: at + late, counts: (at * speed).floor(), missing_duty: Some(taken * seen) }
+                // Such a duty as if P gave nothing.
+                Point {
+                    t: at + late,
+                    counts: (at * speed).floor(),
+                    duty: Some((at, -taken * seen)),
+                    amps: None,
+                    volts: None,
+                    limited: false,
+                }
             };
             (0..30).map(reading).collect()
         };
         let rough = |sees_ticks: bool| {
-            let (scatter, speeds) = scatter(&readings(sees_ticks), taken);
+            let missing = |point: &Point| point.duty.map(|(_, read)| -read);
+            let (scatter, speeds) = scatter(&readings(sees_ticks), missing, taken);
             Turned { speed, missing_duty: 0.012, scatter, speeds }.roughness(rate_hz).unwrap()
         };
         assert!(rough(true) > 1.5 * FILTERED, "{}", rough(true));
