@@ -105,7 +105,7 @@ pub(crate) fn derivative_under<L: Law>(
                 }
                 direction = -direction;
                 let again = creeps(direction, duty + more * CREEP_DUTY, d)?;
-                told = Told::rougher(told, again.and_then(|turned| turned.told(rate_hz)));
+                told = Told::of_both(told, again.and_then(|turned| turned.told(rate_hz)));
             }
             let filter = told.map_or(Some(UNKNOWN), |told| told.filter);
             let roughness = told.map(|told| told.roughness);
@@ -197,11 +197,19 @@ struct Told {
 }
 
 impl Told {
-    /// The rougher of two.
-    fn rougher(one: Option<Self>, other: Option<Self>) -> Option<Self> {
+    /// The mean of two that both tell of a filter, since each reads its length off few readings; else the rougher: polls in step with the counts make a duty smooth.
+    fn of_both(one: Option<Self>, other: Option<Self>) -> Option<Self> {
         let (Some(first), Some(second)) = (one, other) else { return one.or(other) };
+        let times = first.times + second.times;
+        let mean =
+            |a: f64, b: f64| (a * f64::from(first.times) + b * f64::from(second.times)) / f64::from(times);
+        if let (Some(a), Some(b)) = (first.filter, second.filter) {
+            let (likely_s, least_s) = (mean(a.likely_s, b.likely_s), mean(a.least_s, b.least_s));
+            let filter = Some(DerivativeFilter { likely_s, least_s });
+            return Some(Self { roughness: mean(first.roughness, second.roughness), filter, times });
+        }
         let rougher = if first.roughness >= second.roughness { first } else { second };
-        Some(Self { times: first.times + second.times, ..rougher })
+        Some(Self { times, ..rougher })
     }
 }
 
@@ -376,14 +384,22 @@ mod tests {
     }
 
     #[test]
-    fn one_smooth_duty_is_looked_at_again_and_the_rougher_one_counts() {
-        let told = |roughness: f64| {
-            Some(Told { roughness, filter: (roughness < FILTERED).then_some(UNKNOWN), times: 1 })
+    fn of_two_smooth_duties_the_mean_counts_and_of_others_the_rougher_one() {
+        let told = |roughness: f64, likely_s: f64| {
+            let filter = DerivativeFilter { likely_s, least_s: 0.5 * likely_s };
+            Some(Told { roughness, filter: (roughness < FILTERED).then_some(filter), times: 1 })
         };
-        let both = Told::rougher(told(0.02), told(1.1)).expect("both told");
+        let both = Told::of_both(told(0.02, 0.01), told(1.1, 0.0)).expect("both told");
         assert!(both.filter.is_none() && both.times == 2, "polls in step with the counts: {both:?}");
-        assert_eq!(Told::rougher(told(0.1), None).map(|told| told.times), Some(1));
-        assert!(Told::rougher(None, None).is_none());
+        let both = Told::of_both(told(0.04, 0.010), told(0.08, 0.006)).expect("both told");
+        let filter = both.filter.expect("a filter");
+        assert!(
+            (filter.likely_s - 0.008).abs() < 1e-12 && (filter.least_s - 0.004).abs() < 1e-12,
+            "{both:?}"
+        );
+        assert!((both.roughness - 0.06).abs() < 1e-12 && both.times == 2, "{both:?}");
+        assert_eq!(Told::of_both(told(0.1, 0.01), None).map(|told| told.times), Some(1));
+        assert!(Told::of_both(None, None).is_none());
     }
 
     #[test]
