@@ -134,6 +134,19 @@ impl LoopPlant {
         Margins { ms, noise_duty }
     }
 
+    /// Whether the maximum sensitivity is at most `bound`, as [`LoopPlant::margins`] has it, in a third of its time.
+    pub(crate) fn keeps(&self, gains: &Gains, qpps: f64, bound: f64) -> bool {
+        // A square above this is above the bound's whatever was rounded.
+        let clear = 1.000_001 / (bound * bound);
+        (0..self.omega.len()).all(|n| {
+            let (by_speed, by_position) = self.controllers(gains, n);
+            let open = (by_speed * self.speed[n] + by_position * self.position[n]) * self.delay[n] / qpps;
+            let difference = open + 1.0;
+            // A root is taken only where it may matter. What is no number counts as little as it does in a maximum.
+            difference.norm_sqr() > clear || difference.norm().recip().max(0.0) <= bound
+        })
+    }
+
     /// The open loop over the grid: (angular frequency in 1/s, response).
     #[must_use]
     pub fn open_loop(&self, gains: &Gains, qpps: f64) -> Vec<(f64, Complex<f64>)> {
@@ -348,6 +361,17 @@ mod tests {
             }
             let edge = plant.margins(&velocity(low, 0.0), 10_000.0).ms;
             assert!(edge > 20.0, "the sensitivity is without bound at the edge: {edge} at P {low}");
+        }
+    }
+
+    #[test]
+    fn a_bound_is_kept_where_the_maximum_sensitivity_is_no_higher_to_the_last_bit() {
+        let plant = loop_of(0.1, Lag { filter_s: 0.004, delay_ticks: 1.3 });
+        for n in 1..40 {
+            let gains = velocity(0.3 * f64::from(n), 1.5 * f64::from(n));
+            let ms = plant.margins(&gains, 10_000.0).ms;
+            assert!(plant.keeps(&gains, 10_000.0, ms), "{n}: {ms}");
+            assert!(!plant.keeps(&gains, 10_000.0, ms.next_down()), "{n}: {ms}");
         }
     }
 

@@ -50,8 +50,8 @@ impl Loops {
         let margins = self.nominal.margins(gains, task.qpps);
         let kept = margins.ms <= task.goal.ms
             && margins.noise_duty * task.noise_factor <= task.goal.noise_duty
-            && self.worst.margins(gains, task.qpps).ms <= SEARCH.worst_ms * task.goal.ms
-            && self.light.margins(gains, task.qpps).ms <= SEARCH.light_ms * task.goal.ms;
+            && self.worst.keeps(gains, task.qpps, SEARCH.worst_ms * task.goal.ms)
+            && self.light.keeps(gains, task.qpps, SEARCH.light_ms * task.goal.ms);
         kept.then_some(margins)
     }
 

@@ -1,6 +1,6 @@
 //! Velocity PI with feed-forward. D stays 0: one tick of count difference is too coarse to be differentiated again.
 
-use super::search::{Candidate, Loops, ascend, better, finish};
+use super::search::{Candidate, Loops, ascend, finish};
 use super::task::{Design, Task};
 use crate::law::Law;
 use crate::model::{Gains, Pid, PlantModel};
@@ -38,7 +38,7 @@ pub fn design_velocity<L: Law>(task: &Task<L>) -> Option<Design> {
         let time_s = shortest * (longest / shortest).powf(n as f64 / (VELOCITY.times - 1) as f64);
         let Some(top) = ascend(&loops, task, 400.0, |p| pi(p, time_s)) else { continue };
         for share in VELOCITY.shares {
-            best = better(best, candidate(task, pi(top * share, time_s)));
+            best = cheaper(task, pi(top * share, time_s), best.as_ref()).or(best);
         }
     }
     let best = refine(&loops, task, best?);
@@ -54,35 +54,41 @@ fn refine<L: Law>(loops: &Loops, task: &Task<L>, mut best: Candidate) -> Candida
             if loops.within(task, &gains).is_none() || !loops.stable(task, &gains) {
                 continue;
             }
-            let other = candidate(task, gains);
-            if other.cost < best.cost {
-                best = other;
-            }
+            best = cheaper(task, gains, Some(&best)).unwrap_or(best);
         }
         step = step.sqrt();
     }
     best
 }
 
-/// The cost as likely, and half as much again of what it would be on a somewhat quicker motor with the worst lag.
-fn candidate<L: Law>(task: &Task<L>, gains: Gains) -> Candidate {
+/// Gains that cost less than `best`: the cost as likely, and half as much again of what it would be on a somewhat quicker motor with the worst lag.
+fn cheaper<L: Law>(task: &Task<L>, gains: Gains, best: Option<&Candidate>) -> Option<Candidate> {
     let gains = task.law.rounded(&gains, task.qpps);
     let score = velocity_test(&task.plant, &task.law, task.lag, &gains, task.qpps);
-    let other = PlantModel { tau_s: 0.88 * task.plant.tau_s, ..task.plant };
-    let worse = velocity_test(&other, &task.law, task.worst_lag, &gains, task.qpps);
     // A quick motor meets no other bound: what its level changes is how far a step may go past its end.
     let pace = task.goal.pace();
     let capped = |score: &Score, overshoot: f64| {
         let excess = (overshoot - pace * task.most_overshoot).max(0.0);
         score.cost(pace * VELOCITY_OVERSHOOT) * (1.0 + 30.0 * excess)
     };
+    let most = best.map_or(f64::INFINITY, |best| best.cost);
+    // What follows only adds to it.
+    if capped(&score, score.overshoot) >= most {
+        return None;
+    }
+    let other = PlantModel { tau_s: 0.88 * task.plant.tau_s, ..task.plant };
+    let worse = velocity_test(&other, &task.law, task.worst_lag, &gains, task.qpps);
+    let by_worse = 0.5 * capped(&worse, worse.overshoot);
+    if capped(&score, score.overshoot) + by_worse >= most {
+        return None;
+    }
     let unlimited = task.plant.drive_limit.map_or(0.0, |_| {
         let plant = PlantModel { drive_limit: None, brake_limit: None, ..task.plant };
         let score = velocity_test(&plant, &task.law, task.lag, &gains, task.qpps);
         score.overshoot - pace * VELOCITY.unlimited_overshoot
     });
-    let cost = capped(&score, score.overshoot.max(unlimited)) + 0.5 * capped(&worse, worse.overshoot);
-    Candidate { gains, score, cost }
+    let cost = capped(&score, score.overshoot.max(unlimited)) + by_worse;
+    (cost < most).then_some(Candidate { gains, score, cost })
 }
 
 fn pi(p: f64, time_s: f64) -> Gains {
