@@ -118,8 +118,9 @@ impl LoopPlant {
         let mut noise = 0.0;
         let mut before: Option<(f64, f64)> = None;
         for n in 0..self.omega.len() {
-            let (by_speed, by_position) = self.controllers(gains, n);
-            let open = (by_speed * self.speed[n] + by_position * self.position[n]) * self.delay[n] / qpps;
+            let by = self.controllers(gains, n);
+            let open = self.open(by, qpps, n);
+            let (by_speed, by_position) = by;
             let sensitivity = (open + 1.0).norm().recip();
             ms = ms.max(sensitivity);
             // What a rounding error of the count does to the duty.
@@ -134,14 +135,12 @@ impl LoopPlant {
         Margins { ms, noise_duty }
     }
 
-    /// Whether the maximum sensitivity is at most `bound`, as [`LoopPlant::margins`] has it, in a third of its time.
+    /// Whether the maximum sensitivity is at most `bound`, as [`LoopPlant::margins`] has it, without the noise.
     pub(crate) fn keeps(&self, gains: &Gains, qpps: f64, bound: f64) -> bool {
         // A square above this is above the bound's whatever was rounded.
         let clear = 1.000_001 / (bound * bound);
         (0..self.omega.len()).all(|n| {
-            let (by_speed, by_position) = self.controllers(gains, n);
-            let open = (by_speed * self.speed[n] + by_position * self.position[n]) * self.delay[n] / qpps;
-            let difference = open + 1.0;
+            let difference = self.open(self.controllers(gains, n), qpps, n) + 1.0;
             // A root is taken only where it may matter. What is no number counts as little as it does in a maximum.
             difference.norm_sqr() > clear || difference.norm().recip().max(0.0) <= bound
         })
@@ -150,11 +149,7 @@ impl LoopPlant {
     /// The open loop over the grid: (angular frequency in 1/s, response).
     #[must_use]
     pub fn open_loop(&self, gains: &Gains, qpps: f64) -> Vec<(f64, Complex<f64>)> {
-        let at = |n: usize| {
-            let (by_speed, by_position) = self.controllers(gains, n);
-            let open = (by_speed * self.speed[n] + by_position * self.position[n]) * self.delay[n] / qpps;
-            (self.omega[n], open)
-        };
+        let at = |n: usize| (self.omega[n], self.open(self.controllers(gains, n), qpps, n));
         (0..self.omega.len()).map(at).collect()
     }
 
@@ -175,6 +170,16 @@ impl LoopPlant {
     fn largest_pole(&self, gains: &Gains, qpps: f64, oldest: f64) -> f64 {
         let Some(matrix) = self.closed_loop(gains, qpps, oldest) else { return f64::INFINITY };
         matrix.complex_eigenvalues().iter().map(|pole| pole.norm()).fold(0.0, f64::max)
+    }
+
+    /// The open loop at one frequency, of what the controller makes of a speed and of a position there.
+    fn open(
+        &self,
+        (by_speed, by_position): (Complex<f64>, Complex<f64>),
+        qpps: f64,
+        n: usize,
+    ) -> Complex<f64> {
+        (by_speed * self.speed[n] + by_position * self.position[n]) * self.delay[n] / qpps
     }
 
     /// What the controller makes of a speed and of a position at one frequency, before the division by QPPS.

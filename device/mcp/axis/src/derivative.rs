@@ -201,8 +201,7 @@ impl Told {
     fn of_both(one: Option<Self>, other: Option<Self>) -> Option<Self> {
         let (Some(first), Some(second)) = (one, other) else { return one.or(other) };
         let times = first.times + second.times;
-        let mean =
-            |a: f64, b: f64| (a * f64::from(first.times) + b * f64::from(second.times)) / f64::from(times);
+        let mean = |a: f64, b: f64| 0.5 * (a + b);
         if let (Some(a), Some(b)) = (first.filter, second.filter) {
             let (likely_s, least_s) = (mean(a.likely_s, b.likely_s), mean(a.least_s, b.least_s));
             let filter = Some(DerivativeFilter { likely_s, least_s });
