@@ -632,7 +632,8 @@ impl MotorMonitor {
         self.stall_amps.is_some_and(|stall| stall * 0.015 > 2.0 * self.no_current_amps())
     }
 
-    fn slew_per_s(&self) -> f64 {
+    /// How fast a duty is taken to change, 1/s.
+    pub(crate) fn slew_per_s(&self) -> f64 {
         OPEN_LOOP.duty_slew_per_s * self.ramp.unwrap_or(1.0)
     }
 

@@ -48,7 +48,9 @@ impl<L: Law> ExperimentGuard<'_, L> {
             return self.answered_late(late);
         }
         let cause = seen_before.unwrap_or(cause);
-        if cause.is_by_current() && self.is_current_unclear() { Cause::CurrentUnclear } else { cause }
+        // An open motor is named by a current that was clear before, and is none now.
+        let by_latest = cause.is_by_current() && cause != Cause::MotorOpened;
+        if by_latest && self.is_current_unclear() { Cause::CurrentUnclear } else { cause }
     }
 
     pub(super) fn answered_late(&self, late: Late) -> Cause {
