@@ -137,6 +137,13 @@ impl<A: LeadingLaw, P: LawPart> Law for Both<A, P> {
         of_law!(self.derivative_filter())
     }
 
+    fn with_other_sum(&self, gains: &Gains) -> Option<(Self, Gains)> {
+        match self.second.law() {
+            Some(law) => law.with_other_sum(gains).map(|(law, gains)| (Self::second(law), gains)),
+            None => self.first.with_other_sum(gains).map(|(first, gains)| (Self { first, ..*self }, gains)),
+        }
+    }
+
     fn duty_limit(&self) -> Option<DutyLimit> {
         of_law!(self.duty_limit())
     }

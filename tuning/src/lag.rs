@@ -55,8 +55,8 @@ thresholds! {
     LAG_WIDTHS: LagWidths {
         /// Standard deviations on either side of the lag.
         deviations: f64 = 2.0,
-        /// What no record tells, as standard deviations: a part that does not change, in seconds, and a part that goes with the tick, as a share of it (whether a sum is
-        /// used before or after the present error is added, how a filter is discretised).
+        /// What no record tells, as standard deviations: a part that does not change, in seconds, and a part that goes with the tick, as a share of it (how a filter is
+        /// discretised, and whether a sum is taken before or after the present error is added where the record does not tell).
         unmodelled: (f64, f64) = (0.0004, 0.15),
         /// Least and greatest factor of that. Between them the factor is the reduced chi-square of the fit: a loop that the model explains to a third of its noise hides
         /// less than one that it explains badly. Of 400 motors (seeds 7 and 11) the lag of those with a chi-square below 0.5 was within 1.1 ms at the 95th percentile,
@@ -157,6 +157,9 @@ pub struct LagFit {
     /// Whether the speed may not be filtered at all, so that the whole lag lies between the controller and the torque, where a loop on the position meets it too.
     #[serde(default)]
     pub may_lack_filter: bool,
+    /// Whether the loop takes its sum the other way than the law that was asked about ([`Law::with_other_sum`]).
+    #[serde(default)]
+    pub has_other_sum: bool,
     /// How loud the duty of the loop was beside what the rounding of counts makes of it behind that lag.
     #[serde(default = "as_rounding")]
     pub loudness: f64,
@@ -185,6 +188,15 @@ pub struct Stretch {
     pub before: Option<f64>,
 }
 
+/// What a fit is asked beside the lag, each of which takes one more fit.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Asked {
+    /// Whether the speed may not be filtered at all, which matters to loops on the position.
+    pub filter: bool,
+    /// Whether the loop takes its sum before or after the present error is added to it.
+    pub sum: bool,
+}
+
 /// Fits the lag. `sd_ln_tau` is how loosely the time constant is known.
 #[must_use]
 pub fn fit_lag<L: Law>(
@@ -193,6 +205,7 @@ pub fn fit_lag<L: Law>(
     law: &L,
     qpps: f64,
     sd_ln_tau: f64,
+    asked: Asked,
 ) -> Option<LagFit> {
     let steps: usize = stretches.iter().map(|stretch| stretch.record.setpoints.len()).sum();
     let duties: usize = stretches.iter().map(|stretch| stretch.record.duties.len()).sum();
@@ -204,14 +217,25 @@ pub fn fit_lag<L: Law>(
     let found: Vec<(f64, Problem<'_, L>)> = STARTS.iter().filter_map(|start| known.fit(*start)).collect();
     let best = found.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
     let readings = known.readings.max(1) as f64;
+    let doubt = |misfit: f64| LAG_WIDTHS.likely * (misfit / readings).max(1.0);
+    let other_sum = if asked.sum { with_other_sum(stretches, law) } else { None };
+    let other_sum = other_sum.as_ref().map(|(law, gains)| Known::new(gains, plant, law, qpps, sd_ln_tau));
+    let by_other_sum = other_sum.as_ref().and_then(|other| other.fit_from(best.1.q));
+    let has_other_sum = by_other_sum.as_ref().is_some_and(|other| other.0 + doubt(other.0) < best.0);
+    let (known, found) = match other_sum.as_ref().filter(|_| has_other_sum) {
+        Some(other) => (other, found.iter().filter_map(|one| other.fit_from(one.1.q)).collect()),
+        None => (&known, found),
+    };
+    let best = found.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
     let chi_square = best.0 / readings;
-    let likely = best.0 + LAG_WIDTHS.likely * chi_square.max(1.0);
-    let without_filter = Known { has_filter: false, ..known.clone() };
-    let may_lack_filter = without_filter.fit((0.0, STARTS[0].1)).is_some_and(|other| other.0 <= likely);
+    let likely = best.0 + doubt(best.0);
+    let without_filter = asked.filter.then(|| Known { has_filter: false, ..known.clone() });
+    let without_filter = without_filter.as_ref().and_then(|other| other.fit((0.0, STARTS[0].1)));
+    let may_lack_filter = without_filter.is_some_and(|other| other.0 <= likely);
     let sharper = known.sharper(&best.1.q);
     let (known, found) = match &sharper {
         Some(sharper) => (sharper, found.iter().filter_map(|one| sharper.fit_from(one.1.q)).collect()),
-        None => (&known, found),
+        None => (known, found),
     };
     let best = found.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
     let scale = (best.0 / readings).max(1.0);
@@ -221,7 +245,8 @@ pub fn fit_lag<L: Law>(
         LAG_WIDTHS.unmodelled.0.hypot(LAG_WIDTHS.unmodelled.1 * tick_s) * chi_square.clamp(least, most);
     let (mut shortest, mut longest) = (f64::INFINITY, 0.0_f64);
     let is_likely = |misfit: f64| misfit <= best.0 + LAG_WIDTHS.likely * scale;
-    for (_, problem) in found.iter().filter(|other| is_likely(other.0)) {
+    let by_other_sum = by_other_sum.filter(|_| !has_other_sum);
+    for (_, problem) in found.iter().chain(&by_other_sum).filter(|other| is_likely(other.0)) {
         let total = known.parts(&problem.q).iter().sum::<f64>();
         let sd = loud * (problem.deviation() * scale.sqrt()).hypot(floor_s);
         shortest = shortest.min(total - LAG_WIDTHS.deviations * sd);
@@ -239,8 +264,17 @@ pub fn fit_lag<L: Law>(
         tau_scale,
         chi_square,
         may_lack_filter,
+        has_other_sum,
         loudness: as_rounding(),
     })
+}
+
+/// The law with the other sum, and what was polled with what its gains were under it.
+fn with_other_sum<L: Law>(stretches: &[Stretch], law: &L) -> Option<(L, Vec<Stretch>)> {
+    let (other, _) = law.with_other_sum(&stretches.first()?.gains)?;
+    let under_it =
+        |stretch: &Stretch| Some(Stretch { gains: law.with_other_sum(&stretch.gains)?.1, ..stretch.clone() });
+    Some((other, stretches.iter().map(under_it).collect::<Option<_>>()?))
 }
 
 /// What the fit goes by.
@@ -687,7 +721,15 @@ mod tests {
             Lag { filter_s: 0.010, delay_ticks: 0.0 },
             Lag { filter_s: 0.010, delay_ticks: 1.0 },
         ] {
-            let found = fit_lag(&[known_record(lag)], &PLANT, &law, 40_000.0, 0.03).expect("enough readings");
+            let found = fit_lag(
+                &[known_record(lag)],
+                &PLANT,
+                &law,
+                40_000.0,
+                0.03,
+                Asked { filter: true, sum: true },
+            )
+            .expect("enough readings");
             let (got, wanted) = (found.lag.total_s(law.tick_s()), lag.total_s(law.tick_s()));
             assert!((got - wanted).abs() < 0.0025, "{got} s instead of {wanted} s: {found:?}");
             assert!(found.chi_square < 1.5, "{found:?}");
@@ -709,7 +751,8 @@ mod tests {
         let (sharp, ticked) = (about(&timed), about(&of_last_tick));
         assert!(sharp < 0.5 * LAG.sharp_counts && ticked > LAG.sharp_counts, "{sharp} and {ticked}");
         for stretch in [timed, of_last_tick] {
-            let found = fit_lag(&[stretch], &PLANT, &law, 40_000.0, 0.03).expect("enough readings");
+            let found = fit_lag(&[stretch], &PLANT, &law, 40_000.0, 0.03, Asked { filter: true, sum: true })
+                .expect("enough readings");
             let (low_s, high_s) = found.interval_s;
             assert!((low_s..=high_s).contains(&lag.total_s(law.tick_s())), "{found:?}");
         }
@@ -723,13 +766,21 @@ mod tests {
             (Lag { filter_s: 0.0, delay_ticks: 1.0 }, true),
             (Lag { filter_s: 0.010, delay_ticks: 0.0 }, false),
         ] {
-            let found = fit_lag(&[known_record(lag)], &PLANT, &law, 40_000.0, 0.03).expect("enough readings");
+            let found = fit_lag(
+                &[known_record(lag)],
+                &PLANT,
+                &law,
+                40_000.0,
+                0.03,
+                Asked { filter: true, sum: true },
+            )
+            .expect("enough readings");
             assert_eq!(found.may_lack_filter, may_lack_filter, "{lag:?}: {found:?}");
         }
     }
 
     #[test]
     fn a_record_without_steps_says_nothing() {
-        assert!(fit_lag(&[], &PLANT, &PlainLaw::default(), 40_000.0, 0.1).is_none());
+        assert!(fit_lag(&[], &PLANT, &PlainLaw::default(), 40_000.0, 0.1, Asked::default()).is_none());
     }
 }

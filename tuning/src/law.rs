@@ -133,6 +133,11 @@ pub trait Law:
     fn derivative_filter(&self) -> Option<DerivativeFilter> {
         None
     }
+    /// The law whose velocity loop takes its sum before the present error is added to it, or after it, whichever this one does not, and what gains of this law are under
+    /// it; `None` where it is known which.
+    fn with_other_sum(&self, _gains: &Gains) -> Option<(Self, Gains)> {
+        None
+    }
     /// The limit of the duty by which the current is held, where it is not the current itself that is limited.
     fn duty_limit(&self) -> Option<DutyLimit> {
         None

@@ -32,7 +32,7 @@ pub mod model;
 pub mod motor_monitor;
 mod moves;
 pub mod open_loop_record;
-mod oscillation;
+pub mod oscillation;
 mod pace;
 pub mod plain_law;
 mod poll;

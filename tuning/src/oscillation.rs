@@ -29,8 +29,9 @@ thresholds! {
     }
 }
 
-/// Standard deviation about a slow trend.
-pub(crate) fn deviation(values: &[(f64, f64)]) -> f64 {
+/// Standard deviation of dated values about a slow trend, the cubic that fits them best; 0 of fewer than eight.
+#[must_use]
+pub fn deviation(values: &[(f64, f64)]) -> f64 {
     if values.len() < 8 {
         return 0.0;
     }

@@ -176,6 +176,7 @@ mod tests {
                 tau_scale: 1.0,
                 chi_square,
                 may_lack_filter: false,
+                has_other_sum: false,
                 loudness: 1.0,
             },
         )

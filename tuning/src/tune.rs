@@ -11,7 +11,7 @@ use crate::experiment::{
 };
 use crate::experiment_guard::{ExperimentGuard, GuardOptions};
 use crate::fit::{Fit, fit};
-use crate::lag::LagFit;
+use crate::lag::{Asked, LagFit};
 use crate::law::Law;
 use crate::law_probe::LawProbe;
 use crate::linear::{DiscretePlant, LoopPlant};
@@ -286,6 +286,7 @@ fn design<L: LawProbe>(
     };
     guard.progress("Measuring the lag of the loop");
     let task = settle_lag(guard, request, task, report)?;
+    let request = &Request { law: task.law, ..*request };
     let task = with_known_filter(request, report, task);
     let task = if request.method == Method::Pid {
         with_backlash(guard, request, task, probe, report)?
@@ -506,7 +507,7 @@ fn believe(fit: &Fit, poll_s: f64, record: &OpenLoopRecord) -> Result<(), Cause>
 fn settle_lag<L: Law>(
     guard: &mut ExperimentGuard<'_, L>,
     request: &Request<L>,
-    task: Task<L>,
+    mut task: Task<L>,
     report: &mut Report<L>,
 ) -> Result<Task<L>, Cause> {
     if !request.verify || !stays_put(&task, request.excitation) {
@@ -517,7 +518,8 @@ fn settle_lag<L: Law>(
     let registers = guard.write_gains(&task.law, &design.gains, task.qpps)?;
     let gains = task.law.gains(&registers, task.qpps, false);
     let sd_ln_tau = report.fit.map_or(0.1, |fit| fit.sd_ln_tau);
-    let measured = match measure_lag(guard, &careful, &gains, sd_ln_tau, request.excitation) {
+    let asked = Asked { filter: request.method != Method::Velocity, sum: request.probe_law };
+    let measured = match measure_lag(guard, &careful, &gains, sd_ln_tau, (request.excitation, asked)) {
         // Too little room for strokes.
         Err(Cause::TravelLimit) if request.excitation != Excitation::Free => {
             guard.come_to_rest()?;
@@ -530,6 +532,13 @@ fn settle_lag<L: Law>(
         return Ok(task);
     };
     report.lag = Some(found);
+    if found.has_other_sum
+        && let Some((law, _)) = task.law.with_other_sum(&gains)
+    {
+        task.law = law;
+        guard.law = law;
+        report.request.law = law;
+    }
     Ok(with_lag(Task { noise_factor: found.loudness, ..task }, &found))
 }
 

@@ -5,7 +5,7 @@ use crate::cause::Cause;
 use crate::design::{Design, Goal, Task, deadzone};
 use crate::experiment::rest;
 use crate::experiment_guard::{ExperimentGuard, Point};
-use crate::lag::{ClosedLoopRecord, LagFit, Stretch, fit_lag, predicted_record};
+use crate::lag::{Asked, ClosedLoopRecord, LagFit, Stretch, fit_lag, predicted_record};
 use crate::law::Law;
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::margin::{MARGIN, headroom, may_be_short, scaled};
@@ -98,7 +98,7 @@ pub fn measure_lag<L: Law>(
     task: &Task<L>,
     gains: &Gains,
     sd_ln_tau: f64,
-    excitation: Excitation,
+    (excitation, asked): (Excitation, Asked),
 ) -> Result<Option<LagFit>, Cause> {
     let (from_s, to_s) = match excitation {
         Excitation::Free => run_steps(guard, task, gains)?,
@@ -106,7 +106,7 @@ pub fn measure_lag<L: Law>(
     };
     let record = ClosedLoopRecord::of(guard, from_s, to_s);
     let stretch = Stretch { record, gains: *gains, before: None };
-    let Some(found) = fit_lag(&[stretch], &task.plant, &task.law, task.qpps, sd_ln_tau) else {
+    let Some(found) = fit_lag(&[stretch], &task.plant, &task.law, task.qpps, sd_ln_tau, asked) else {
         return Ok(None);
     };
     let noise = LoopPlant::new(DiscretePlant::of(&task.plant, task.law.tick_s()), &task.law, found.lag)

@@ -37,7 +37,7 @@ thresholds! {
         /// Standard deviation of a battery reading from its rounding, in volts.
         rounding_volts: f64 = 0.03,
         /// Standard deviation of the volts from the rounding of the current, in volts per ampere.
-        rounding_amps: f64 = 0.003,
+        rounding_volts_per_amp: f64 = 0.003,
     }
 }
 
@@ -153,7 +153,7 @@ impl Row {
     fn weight(&self) -> f64 {
         1.0 / (WINDING.rounding_volts.powi(2)
             + (WINDING.model * self.volts).powi(2)
-            + (WINDING.rounding_amps * self.amps).powi(2))
+            + (WINDING.rounding_volts_per_amp * self.amps).powi(2))
         .sqrt()
     }
 }

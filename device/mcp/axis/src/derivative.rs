@@ -9,6 +9,7 @@ use brushwork_tuning::cause::Cause;
 use brushwork_tuning::experiment_guard::Point;
 use brushwork_tuning::law::Law;
 use brushwork_tuning::model::DerivativeFilter;
+use brushwork_tuning::oscillation::deviation;
 use brushwork_tuning::settle::slope;
 
 /// Duty above the starting one at which the motor creeps.
@@ -43,6 +44,12 @@ const AROUND: [usize; 3] = [1, 3, 6];
 /// By how much more duty the motor creeps again where whole counts told nothing or the duty was smooth, as shares of that above the starting one: polls that keep in
 /// step with the counts see the same of them each time, at one speed and not at another.
 const AGAIN: [f64; 2] = [0.35, 0.7];
+/// The cogs of a quick motor make the duty of a slow creep rough where many counts in a tick make it smooth: with time constants up to so many seconds and from so many
+/// counts in a tick on, a rough duty is read again with more duty, by which the cogs pass more quickly, and the smoothest counts. Of coreless motors of another make with
+/// such a filter every second PD and PID was taken to see whole counts.
+const COGGED_TAU_S: f64 = 0.05;
+const MANY_PER_TICK: f64 = 8.0;
+const FASTER: [f64; 2] = [0.1, 0.2];
 /// D's duty is that of a filtered speed below such a share of what differences of whole counts make: a filter of one tick leaves three tenths of it, twenty readings
 /// spread by a third.
 const FILTERED: f64 = 0.4;
@@ -79,6 +86,7 @@ pub(crate) fn derivative_under<L: Law>(
     };
     guard.progress("Reading what D takes from the duty while the motor creeps");
     let duty = start_duty + CREEP_DUTY;
+    let is_cogged = guard.monitor.tau_bounds_s.is_some_and(|tau| (tau.0 * tau.1).sqrt() < COGGED_TAU_S);
     let mut creeps = |direction: f64, duty: f64, d: f64| {
         let turned = creep.run(guard, (direction, duty), scale, d);
         coast(guard)?;
@@ -99,13 +107,23 @@ pub(crate) fn derivative_under<L: Law>(
             // A D per tick tells the rate of the loop itself.
             let rate_hz = if found < MOST_TICK_S { 1.0 / found } else { rate_hz };
             let mut told = turned.told(rate_hz);
-            for more in AGAIN {
-                if told.is_some_and(|told| told.times > 1 || told.roughness >= FILTERED) {
+            let mut again = &AGAIN[..];
+            if is_cogged && turned.has_many_counts(rate_hz) && told.is_some_and(|told| told.is_rough()) {
+                told = None;
+                for more in FASTER {
+                    direction = -direction;
+                    let faster = creeps(direction, duty + more, d)?;
+                    told = Told::smoother(told, faster.and_then(|turned| turned.told(rate_hz)));
+                }
+                again = &[];
+            }
+            for more in again {
+                if told.is_some_and(|told| told.times > 1 || told.is_rough()) {
                     break;
                 }
                 direction = -direction;
-                let again = creeps(direction, duty + more * CREEP_DUTY, d)?;
-                told = Told::of_both(told, again.and_then(|turned| turned.told(rate_hz)));
+                let other = creeps(direction, duty + more * CREEP_DUTY, d)?;
+                told = Told::of_both(told, other.and_then(|turned| turned.told(rate_hz)));
             }
             let filter = told.map_or(Some(UNKNOWN), |told| told.filter);
             let roughness = told.map(|told| told.roughness);
@@ -162,6 +180,8 @@ struct Turned {
     /// By how much that scatters about what the speed takes, as variance, and the speeds that it was read at, counts/s.
     scatter: f64,
     speeds: Vec<f64>,
+    /// By how much it scatters about its own slow trend, as variance.
+    about_trend: f64,
 }
 
 /// By how much the duty that is missing scatters about what the speed takes, as variance, and the speeds, counts/s: by that number of readings on either side of which
@@ -197,6 +217,18 @@ struct Told {
 }
 
 impl Told {
+    /// Whether D sees differences of whole counts.
+    fn is_rough(&self) -> bool {
+        self.roughness >= FILTERED
+    }
+
+    /// The smoother of two creeps, each of which something beside the counts may have made rough.
+    fn smoother(one: Option<Self>, other: Option<Self>) -> Option<Self> {
+        let (Some(first), Some(second)) = (one, other) else { return one.or(other) };
+        let smoother = if first.roughness <= second.roughness { first } else { second };
+        Some(Self { times: first.times + second.times, ..smoother })
+    }
+
     /// The mean of two that both tell of a filter, since each reads its length off few readings; else the rougher: polls in step with the counts make a duty smooth.
     fn of_both(one: Option<Self>, other: Option<Self>) -> Option<Self> {
         let (Some(first), Some(second)) = (one, other) else { return one.or(other) };
@@ -213,6 +245,15 @@ impl Told {
 }
 
 impl Turned {
+    /// The variance that counts. At many counts in a tick the speed of some readings is no better known than D's duty, whose own slow trend takes its place.
+    fn variance(&self, rate_hz: f64) -> f64 {
+        if self.has_many_counts(rate_hz) { self.scatter.min(self.about_trend) } else { self.scatter }
+    }
+
+    fn has_many_counts(&self, rate_hz: f64) -> bool {
+        self.speed > MANY_PER_TICK * rate_hz
+    }
+
     /// What it tells; `None` where whole counts make nearly no difference.
     fn told(&self, rate_hz: f64) -> Option<Told> {
         let roughness = self.roughness(rate_hz)?;
@@ -227,14 +268,14 @@ impl Turned {
         let expected = shares.sum::<f64>() / self.speeds.len().max(1) as f64;
         let of_a_count = self.missing_duty * rate_hz / self.speed;
         let is_told = expected > LEAST_ROUGH && self.speeds.len() >= ENOUGH_FOR_ROUGHNESS;
-        is_told.then(|| self.scatter / (expected * of_a_count.powi(2)))
+        is_told.then(|| self.variance(rate_hz) / (expected * of_a_count.powi(2)))
     }
 
     /// The filter of the speed that D sees: as smooth as it makes D's duty, and the least with which twice the scatter of so many readings may hide.
     fn filter(&self, rate_hz: f64) -> Option<DerivativeFilter> {
         self.roughness(rate_hz).filter(|rough| *rough < FILTERED)?;
         let of_a_count = self.missing_duty * rate_hz / self.speed;
-        let counts = self.scatter / of_a_count.powi(2);
+        let counts = self.variance(rate_hz) / of_a_count.powi(2);
         let n = self.speeds.len() as f64;
         let delay_s = |counts: f64| {
             let rough = |share: f64| {
@@ -310,14 +351,16 @@ impl Creep {
             let by_p = p * direction * (target - point.counts) / (scale * QPPS);
             point.duty.map(|(_, read)| by_p - direction * read)
         };
-        let all: Vec<f64> = readings.iter().filter_map(missing).collect();
+        let all: Vec<(f64, f64)> =
+            readings.iter().filter_map(|point| Some((point.t, missing(point)?))).collect();
         if all.len() < LEAST_READINGS || came < LEAST_COUNTS || end.t <= begin.t {
             return Ok(None);
         }
-        let missing_duty = all.iter().sum::<f64>() / all.len() as f64;
+        let missing_duty = all.iter().map(|reading| reading.1).sum::<f64>() / all.len() as f64;
         let speed = came / (end.t - begin.t);
         let (scatter, speeds) = scatter(&readings, missing, direction * missing_duty / speed);
-        Ok(Some(Turned { speed, missing_duty, scatter, speeds }))
+        let about_trend = deviation(&all).powi(2);
+        Ok(Some(Turned { speed, missing_duty, scatter, speeds, about_trend }))
     }
 }
 
@@ -338,7 +381,13 @@ mod tests {
     #[test]
     fn a_filtered_derivative_is_told_by_its_smooth_duty() {
         // 450 counts/s at 300 Hz are one count in a tick or two: the duty of D jumps by one count's.
-        let of = |scatter| Turned { speed: 450.0, missing_duty: 0.015, scatter, speeds: vec![450.0; 20] };
+        let of = |scatter| Turned {
+            speed: 450.0,
+            missing_duty: 0.015,
+            scatter,
+            speeds: vec![450.0; 20],
+            about_trend: scatter,
+        };
         let of_a_count = 0.015 * 300.0 / 450.0_f64;
         let rough = of(0.25 * of_a_count.powi(2)).roughness(300.0).unwrap();
         assert!((rough - 1.0).abs() < 1e-9, "{rough}");
@@ -371,8 +420,9 @@ mod tests {
             let counts = squares / f64::from(ticks) - mean * mean;
             let missing_duty = 0.01;
             let of_a_count = missing_duty * rate_hz / speed;
+            let scatter = counts * of_a_count.powi(2);
             let turned =
-                Turned { speed, missing_duty, scatter: counts * of_a_count.powi(2), speeds: vec![speed; 28] };
+                Turned { speed, missing_duty, scatter, speeds: vec![speed; 28], about_trend: scatter };
             let found = turned.filter(rate_hz).expect("a filter");
             assert!((found.likely_s / filter_s - 1.0).abs() < 0.05, "{filter_s} at {rate_hz} Hz: {found:?}");
             assert!(
@@ -427,7 +477,9 @@ mod tests {
         let rough = |sees_ticks: bool| {
             let missing = |point: &Point| point.duty.map(|(_, read)| -read);
             let (scatter, speeds) = scatter(&readings(sees_ticks), missing, taken);
-            Turned { speed, missing_duty: 0.012, scatter, speeds }.roughness(rate_hz).unwrap()
+            Turned { speed, missing_duty: 0.012, scatter, speeds, about_trend: scatter }
+                .roughness(rate_hz)
+                .unwrap()
         };
         assert!(rough(true) > 1.5 * FILTERED, "{}", rough(true));
         assert!(rough(false) < FILTERED, "{}", rough(false));

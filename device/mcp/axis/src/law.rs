@@ -13,7 +13,7 @@ use brushwork_tuning::experiment_guard::ExperimentGuard;
 use brushwork_tuning::joined::LeadingLaw;
 use brushwork_tuning::law::{Ending, Facts, Law, Seen};
 use brushwork_tuning::law_probe::LawProbe;
-use brushwork_tuning::model::{DerivativeFilter, Gains};
+use brushwork_tuning::model::{DerivativeFilter, Gains, Pid};
 use brushwork_tuning::setpoint::Setpoint;
 use brushwork_tuning::tune::Method;
 
@@ -42,6 +42,13 @@ impl Law for McpLaw {
 
     fn feed_forward(&self) -> f64 {
         self.feed_forward
+    }
+
+    fn with_other_sum(&self, gains: &Gains) -> Option<(Self, Gains)> {
+        let other = Self { forward_sum: !self.forward_sum, ..*self };
+        let Pid { p, i, .. } = gains.velocity;
+        let velocity = Pid { p: p + i * (self.sum_late_s() - other.sum_late_s()), ..gains.velocity };
+        Some((other, Gains { velocity, ..*gains }))
     }
 
     fn tick(&self, state: &mut Cascade, gains: (&Gains, f64), setpoint: Setpoint, seen: &Seen<'_>) -> f64 {
@@ -171,7 +178,7 @@ impl LeadingLaw for McpLaw {
 mod tests {
     use super::*;
     use brushwork_tuning::linear::{DiscretePlant, LoopPlant};
-    use brushwork_tuning::model::{Lag, Pid, PlantModel};
+    use brushwork_tuning::model::{Lag, PlantModel};
     use brushwork_tuning::ticks::TickLoop;
 
     const QPPS: f64 = 10_000.0;

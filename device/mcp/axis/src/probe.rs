@@ -12,6 +12,7 @@ use brushwork_tuning::experiment_guard::{ExperimentGuard, Point};
 use brushwork_tuning::law::Law;
 use brushwork_tuning::law_probe::speed_step;
 use brushwork_tuning::model::DerivativeFilter;
+use brushwork_tuning::settle::slope;
 use brushwork_tuning::tune::Method;
 use serde::{Deserialize, Serialize};
 
@@ -111,6 +112,7 @@ impl LawFindings {
             feed_forward,
             velocity_scale,
             integral_scale,
+            forward_sum: usual.forward_sum,
             derivative_s: None,
             derivative_filter: self.derivative_filter,
         };
@@ -413,10 +415,14 @@ fn scale_with<L: Law>(
     let from_s = guard.now_s() + 0.012;
     guard.poll_for(0.012 + READ_S, true)?;
     guard.duty(0.0)?;
-    let ratios = guard.points.iter().filter_map(|point| {
+    let seen: Vec<Point> = guard.points.iter().copied().filter(|point| point.t > from_s).collect();
+    let ratios = (0..seen.len()).filter_map(|n| {
+        let (point, around) = (seen[n], &seen[n.saturating_sub(1)..(n + 2).min(seen.len())]);
         let (t, read) = point.duty?;
-        let (error, read) = (direction * (target - point.counts), direction * read);
-        (t > from_s && read > 1e-4 && error > 0.0).then(|| p * error / (read * QPPS))
+        // A motor that still creeps goes on between the reading of its count and that of its duty.
+        let count = point.counts + slope(around).unwrap_or(0.0) * (t - point.t);
+        let (error, read) = (direction * (target - count), direction * read);
+        (read > 1e-4 && error > 0.0).then(|| p * error / (read * QPPS))
     });
     let mut ratios: Vec<f64> = ratios.collect();
     ratios.sort_by(f64::total_cmp);

@@ -29,6 +29,9 @@ pub struct McpLaw {
     /// Wire value of a velocity I that adds the error once per tick, or per second.
     #[serde(default = "usual_scale", skip_serializing_if = "is_usual_scale")]
     pub integral_scale: f64,
+    /// Whether the velocity loop takes its sum before the present error is added to it (forward Euler), not after (backward Euler).
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub forward_sum: bool,
     /// Seconds that a position D of 1 multiplies the speed with, where that is not what I counts by.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub derivative_s: Option<f64>,
@@ -84,6 +87,7 @@ impl Default for McpLaw {
             feed_forward: 1.0,
             velocity_scale: VELOCITY_SCALE,
             integral_scale: VELOCITY_SCALE,
+            forward_sum: false,
             derivative_s: None,
             derivative_filter: None,
         }
@@ -95,6 +99,11 @@ impl McpLaw {
     #[must_use]
     pub fn derivative_s(&self) -> f64 {
         self.derivative_s.unwrap_or_else(|| self.tick_s() / self.gain_step())
+    }
+
+    /// What a sum that the present error is not in yet takes from P, per I: the same loop is one with that sum and less P.
+    pub(crate) fn sum_late_s(&self) -> f64 {
+        if self.forward_sum { self.tick_s() } else { 0.0 }
     }
 
     /// Seconds that one unit of the integral or derivative stands for.
@@ -175,7 +184,7 @@ pub enum McpNote {
 /// Velocity registers of an MCP or RoboClaw.
 #[must_use]
 pub fn velocity_registers(velocity: &Pid, qpps: f64, law: &McpLaw) -> VelocityRegisters {
-    let [p, i, d] = per_step(velocity, law);
+    let [p, i, d] = per_step(&Pid { p: velocity.p + velocity.i * law.sum_late_s(), ..*velocity }, law);
     let (scale, integral) = (law.velocity_scale, law.integral_scale);
     VelocityRegisters { p: raw(p, scale), i: raw(i, integral), d: raw(d, scale), qpps: whole(qpps) }
 }
@@ -184,9 +193,10 @@ pub fn velocity_registers(velocity: &Pid, qpps: f64, law: &McpLaw) -> VelocityRe
 #[must_use]
 pub fn velocity_gains(registers: &VelocityRegisters, law: &McpLaw) -> Pid {
     let step_s = law.tick_s() / law.gain_step();
+    let i = f64::from(registers.i) / law.integral_scale / step_s;
     Pid {
-        p: f64::from(registers.p) / law.velocity_scale,
-        i: f64::from(registers.i) / law.integral_scale / step_s,
+        p: f64::from(registers.p) / law.velocity_scale - i * law.sum_late_s(),
+        i,
         d: f64::from(registers.d) / law.velocity_scale * step_s,
     }
 }
@@ -240,11 +250,31 @@ mod tests {
 
     #[test]
     fn registers_and_gains_are_each_others_inverse_up_to_rounding() {
-        for law in [McpLaw::default(), McpLaw { rate_hz: 625, per_tick: false, ..McpLaw::default() }] {
+        let usual = McpLaw::default();
+        let others =
+            [McpLaw { rate_hz: 625, per_tick: false, ..usual }, McpLaw { forward_sum: true, ..usual }];
+        for law in [usual].into_iter().chain(others) {
             let pid = Pid { p: 2.5, i: 40.0, d: 0.01 };
             let back = velocity_gains(&velocity_registers(&pid, 12_345.0, &law), &law);
             assert!((back.p - pid.p).abs() < 1e-4 && (back.i / pid.i - 1.0).abs() < 1e-3);
             assert!((back.d / pid.d - 1.0).abs() < 1e-2);
+        }
+    }
+
+    /// Both sums tick by tick under the same registers: the one before the error is in it gives what the other gives with the gains that stand for it.
+    #[test]
+    fn a_sum_that_the_error_is_not_in_yet_is_less_p() {
+        let law = McpLaw { forward_sum: true, ..McpLaw::default() };
+        let registers = VelocityRegisters { p: 0x1_0000, i: 0x4000, d: 0, qpps: 10_000 };
+        let gains = velocity_gains(&registers, &law);
+        let (p, i) = (1.0, 0.25);
+        let (mut before, mut after) = (0.0, 0.0);
+        for error in [100.0, 60.0, -20.0, 5.0] {
+            let of_unit = p * error + i * before;
+            before += error;
+            after += error * law.tick_s();
+            let of_gains = gains.p * error + gains.i * after;
+            assert!((of_unit - of_gains).abs() < 1e-9, "{of_unit} {of_gains}");
         }
     }
 
