@@ -162,6 +162,10 @@ impl Complex {
         self.mul(Self(other.0, -other.1)).times(1.0 / square)
     }
 
+    pub fn angle(self) -> f64 {
+        self.1.atan2(self.0)
+    }
+
     pub fn size(self) -> f64 {
         self.0.hypot(self.1)
     }
@@ -174,6 +178,9 @@ pub struct Machine {
     pub speed: f64,
     pub angle: f64,
     pub volts: f64,
+    /// It is held fast; one of its leads is off.
+    pub is_locked: bool,
+    pub is_open: bool,
     /// Steps since the current limit last held the duty back.
     since_limited: u32,
 }
@@ -186,6 +193,8 @@ impl Machine {
             speed: 0.0,
             angle: 0.31 / motor.counts_per_radian(),
             volts: motor.volts,
+            is_locked: false,
+            is_open: false,
             since_limited: u32::MAX,
         }
     }
@@ -205,14 +214,14 @@ impl Machine {
         let given = (duty * self.volts).clamp(emf - most, emf + most);
         self.since_limited =
             if given == duty * self.volts { self.since_limited.saturating_add(1) } else { 0 };
-        let goal = (given - emf) / m.ohms;
+        let goal = if self.is_open { 0.0 } else { (given - emf) / m.ohms };
         self.amps = goal + (self.amps - goal) * (-dt * m.ohms / m.henries).exp();
         let cogging = m.cogging * (m.cogs * self.angle).sin();
         let torque = m.constant * self.amps - m.viscous * self.speed - cogging;
         let held = m.coulomb + m.stiction * (-(self.speed / m.stribeck).powi(2)).exp();
         let free = self.speed + dt * torque / m.inertia;
         let slowed = free.abs() - dt * held / m.inertia;
-        self.speed = if slowed <= 0.0 { 0.0 } else { slowed * free.signum() };
+        self.speed = if slowed <= 0.0 || self.is_locked { 0.0 } else { slowed * free.signum() };
         self.angle += dt * self.speed;
     }
 

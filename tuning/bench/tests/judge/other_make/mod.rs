@@ -8,8 +8,8 @@ use brushwork_mcp_axis::McpLaw;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::experiment_guard::GuardOptions;
 use brushwork_tuning::report::{Report, Verdict};
-use brushwork_tuning::tune::{Request, tune};
-use controller::{Controller, LawOptions, NOISE_AMPS, sensitivity};
+use brushwork_tuning::tune::{Method, Request, tune};
+use controller::{Controller, Fault, LawOptions, NOISE_AMPS, sensitivity};
 use machine::{Draw, Motor};
 use std::time::Duration;
 
@@ -25,6 +25,7 @@ struct Drawn {
 fn drawn(seed: u64, number: usize) -> Drawn {
     let mut draw = Draw::new(seed, number as u64);
     let motor = Motor::drawn(&mut draw, number);
+    let mut position = Draw::new(seed ^ 0x5555, number as u64);
     let law = LawOptions {
         rate_hz: draw.one_of(&[200.0, 300.0, 500.0, 625.0, 1_000.0]),
         per_tick: draw.uniform() < 0.5,
@@ -32,6 +33,8 @@ fn drawn(seed: u64, number: usize) -> Drawn {
         proportional: draw.one_of(&[1.0, 1.0, 4.0]),
         filter_s: draw.one_of(&[0.0, 0.0, 0.004, 0.010]),
         late_ticks: draw.one_of(&[0, 1]),
+        position_scale: position.one_of(&[1_024.0, 1_024.0, 2_048.0, 700.0]),
+        filters_derivative: position.uniform() < 0.5,
     };
     let poll_s = draw.log(0.010, 0.020);
     Drawn { motor, law, poll_s, noise_amps: NOISE_AMPS, draw }
@@ -40,6 +43,8 @@ fn drawn(seed: u64, number: usize) -> Drawn {
 /// A run, and what its gains really are.
 struct Run {
     law: LawOptions,
+    /// Filter, late ticks and winding together, s.
+    lag_s: f64,
     report: Report<McpLaw>,
     /// The sensitivity of the loop as it is; `None` where it is unstable, or there are no gains.
     ms: Option<f64>,
@@ -48,26 +53,34 @@ struct Run {
 
 impl Run {
     fn of(seed: u64, number: usize, change: impl Fn(&mut Drawn)) -> Self {
+        Self::with(seed, number, Method::Velocity, change)
+    }
+
+    fn with(seed: u64, number: usize, method: Method, change: impl Fn(&mut Drawn)) -> Self {
         let mut all = drawn(seed, number);
         change(&mut all);
         let Drawn { motor, law, poll_s, noise_amps, draw } = all;
         let mut unit = Controller::new(motor, law, draw);
         unit.noise_amps = noise_amps;
         let guard = GuardOptions { poll_s, ..GuardOptions::default() };
-        let report = tune(&mut unit, &Request::<McpLaw> { guard, ..Request::default() });
-        let ms = report.proposed.velocity.and_then(|registers| sensitivity(&motor, &law, &registers));
+        let report = tune(&mut unit, &Request::<McpLaw> { guard, method, ..Request::default() });
+        let ms = report
+            .proposed
+            .velocity
+            .and_then(|registers| sensitivity(&motor, &law, &registers, report.proposed.position.as_ref()));
         let tick_s = 1.0 / f64::from(report.request.law.rate_hz);
         let lag_ms = report.lag.map(|lag| 1e3 * lag.lag.total_s(tick_s));
+        let lag_s = law.lag_s() + motor.henries / motor.ohms;
         let line = format!(
-            "{number} {} {law:?}: {:?} {:?}, Ms {ms:.2?} (said {:.2?}), lag {lag_ms:.1?} of {:.1} ms, {:?}",
+            "{method:?} {number} {} {law:?}: {:?} {:?}, Ms {ms:.2?} (said {:.2?}), lag {lag_ms:.1?} of {:.1} ms, {:?}",
             motor.kind,
             report.verdict,
             report.causes,
             report.design.map(|design| design.ms),
-            1e3 * law.lag_s(),
+            1e3 * lag_s,
             report.request.law,
         );
-        Self { law, report, ms, line }
+        Self { law, lag_s, report, ms, line }
     }
 }
 
@@ -219,4 +232,119 @@ fn intervals_of_another_make_hold_the_truth_and_are_not_absurdly_wide() {
         assert!(share >= 0.9, "{}: {share}", interval.name);
         assert!(width <= widest, "{}: {width}", interval.name);
     }
+}
+
+/// The seed of the position loops and how many motors of it are tuned, with others by `OTHER_MAKE_LOOPS="1004 120"`. Of 1001 to 1003 and 1008 motors were looked at while the tuner was
+/// changed, and those of which much was wrong are here by name; 1006 was not.
+fn loops() -> (u64, usize) {
+    let words = std::env::var("OTHER_MAKE_LOOPS").unwrap_or_else(|_| "1006 18".to_owned());
+    let (seed, motors) = words.split_once(' ').expect("a seed and a number of motors");
+    (seed.parse().expect("a seed"), motors.parse().expect("a number of motors"))
+}
+
+/// A derivative that sees a filtered speed was taken to see whole counts where the cogs of a quick motor made its duty rough (true Ms up to 3.7), and gains on the speed were too
+/// high where the loop takes its sum before the present error is added to it (up to 2.05).
+#[test]
+fn position_loops_of_another_make_keep_the_margin_that_they_promise() {
+    let (seed, motors) = loops();
+    let drawn = [Method::Pd, Method::Pid, Method::Piv]
+        .into_iter()
+        .flat_map(|method| (0..motors).map(move |number| (seed, number, method)));
+    let known = [
+        (1_001, 9, Method::Pd),
+        (1_002, 93, Method::Pd),
+        (1_003, 69, Method::Pid),
+        (1_002, 105, Method::Piv),
+        (1_002, 75, Method::Piv),
+    ];
+    let (mut runs, mut tuned, mut silent) = (0, 0, 0);
+    for (seed, number, method) in known.into_iter().chain(drawn) {
+        let run = Run::with(seed, number, method, |_| {});
+        println!("{}", run.line);
+        if run.report.verdict == Verdict::Refused {
+            // Without a share of the setpoint a position alone gives no duty.
+            let is_without =
+                run.report.causes.first() == Some(&Cause::UnknownLaw) && run.law.feed_forward == 0.0;
+            assert!(is_without && method != Method::Piv, "{}", run.line);
+            continue;
+        }
+        runs += 1;
+        assert!(run.ms.is_some(), "stable: {}", run.line);
+        if run.report.verdict == Verdict::Tuned {
+            tuned += 1;
+            silent += usize::from(run.ms.is_some_and(|ms| ms > 1.8));
+        }
+    }
+    println!("{tuned} of {runs} tuned without a warning, {silent} of them above a true Ms of 1.8");
+    assert!(2 * tuned >= runs, "a warning on every run says nothing: {tuned} of {runs} without one");
+    assert_eq!(silent, 0, "of seed {seed}");
+}
+
+/// Taken to be the other one, the lag of these was off by 1.2 to 2.4 ms, outside its interval.
+#[test]
+fn whether_the_sum_is_taken_before_the_error_is_added_is_found_out() {
+    for number in [15, 75, 96, 105, 117] {
+        let run = Run::of(1_002, number, |_| {});
+        println!("{}", run.line);
+        assert!(run.report.request.law.forward_sum, "{}", run.line);
+        let interval = run.report.lag.map(|lag| lag.interval_s);
+        assert!(
+            interval.is_some_and(|(low, high)| (low..=high).contains(&run.lag_s)),
+            "{interval:?}: {}",
+            run.line
+        );
+    }
+}
+
+/// In identification and in trials, of velocity and PIV. A sensor with noise called open motors unclear, since the current of the open motor is no more than the noise;
+/// a duty that ramps half as fast as it was asked to made an encoder of a locked shaft "lost".
+#[test]
+fn faults_of_another_make_are_named_and_the_motor_is_off_in_time() {
+    const FAULTS: [(Fault, Cause, f64); 6] = [
+        (Fault::Locked, Cause::Stalled, 0.3),
+        (Fault::MotorOpened, Cause::MotorOpened, 0.5),
+        (Fault::EncoderLost, Cause::EncoderLost, 0.3),
+        (Fault::EncoderFlipped, Cause::EncoderFlipped, 0.3),
+        (Fault::LinkLost, Cause::LinkLost, 0.25),
+        (Fault::RepliesLost, Cause::LinkLost, 0.25),
+    ];
+    let (mut runs, mut named, mut in_time) = (0, 0, 0);
+    for number in 0..12 {
+        let method = if number < 6 { Method::Velocity } else { Method::Piv };
+        let run = |fault: Option<(Fault, Duration)>| {
+            let Drawn { motor, law, poll_s, draw, .. } = drawn(1_007, number);
+            let mut unit = Controller::new(motor, law, draw);
+            unit.fault = fault;
+            let guard = GuardOptions { poll_s, ..GuardOptions::default() };
+            let report = tune(&mut unit, &Request::<McpLaw> { guard, method, ..Request::default() });
+            (report, unit.driven.longest_s)
+        };
+        let (identified_s, whole_s) = run(None).0.seconds;
+        for (n, (fault, cause, deadline_s)) in FAULTS.into_iter().enumerate() {
+            let mut draw = Draw::new(1_007, (10 * number + n) as u64);
+            for (from_s, to_s) in [(1.0, identified_s), (identified_s, whole_s)] {
+                // The controller's time is 0.7 s at the start.
+                let at_s = 0.7 + draw.between(from_s, to_s);
+                let (report, off_s) = run(Some((fault, Duration::from_secs_f64(at_s))));
+                if report.verdict != Verdict::Refused {
+                    continue;
+                }
+                runs += 1;
+                let is_named = report.causes.first() == Some(&cause);
+                // A duty that comes a tick late ramps half as fast, for 0.05 s more.
+                let is_off = off_s <= deadline_s + 0.06;
+                (named, in_time) = (named + usize::from(is_named), in_time + usize::from(is_off));
+                if !is_named || !is_off {
+                    println!(
+                        "{method:?} {number} {fault:?} at {at_s:.2} s: {:?}, off after {off_s:.3} s",
+                        report.causes
+                    );
+                }
+            }
+        }
+    }
+    println!("{named} of {runs} named, {in_time} off in time");
+    assert!(runs > 120, "{runs}");
+    assert!(100 * named >= 95 * runs, "{named} of {runs} named");
+    assert!(100 * in_time >= 90 * runs, "{in_time} of {runs} off in time");
 }
