@@ -112,7 +112,8 @@ impl LawFindings {
             feed_forward,
             velocity_scale,
             integral_scale,
-            forward_sum: usual.forward_sum,
+            // Found out by the loop itself, from the usual one.
+            forward_sum: false,
             derivative_s: None,
             derivative_filter: self.derivative_filter,
         };
@@ -415,7 +416,8 @@ fn scale_with<L: Law>(
     let from_s = guard.now_s() + 0.012;
     guard.poll_for(0.012 + READ_S, true)?;
     guard.duty(0.0)?;
-    let seen: Vec<Point> = guard.points.iter().copied().filter(|point| point.t > from_s).collect();
+    let is_seen = |point: &Point| point.duty.is_some_and(|duty| duty.0 > from_s);
+    let seen: Vec<Point> = guard.points.iter().copied().filter(is_seen).collect();
     let ratios = (0..seen.len()).filter_map(|n| {
         let (point, around) = (seen[n], &seen[n.saturating_sub(1)..(n + 2).min(seen.len())]);
         let (t, read) = point.duty?;
