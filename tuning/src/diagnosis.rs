@@ -211,11 +211,13 @@ fn turns_unseen(monitor: &MotorMonitor, moments: &[Moment], alarm_s: f64) -> boo
         .collect();
     let driven_off = middle(off).is_some_and(|middle| middle > DIAGNOSIS.short);
     let stall = monitor.stall_amps.unwrap_or(f64::INFINITY);
-    let braked_s = match monitor.is_abrupt {
-        true => DIAGNOSIS.braked_at_once_s,
+    let braked_s = if monitor.is_abrupt {
+        DIAGNOSIS.braked_at_once_s
+    } else if driven_off {
+        DIAGNOSIS.braked_s
+    } else {
         // A controller may ramp half as fast as it was asked to, which a heavy motor hides.
-        false if !driven_off => DIAGNOSIS.braked_s + monitor.duty_at(alarm_s).abs() / monitor.slew_per_s(),
-        false => DIAGNOSIS.braked_s,
+        DIAGNOSIS.braked_s + monitor.duty_at(alarm_s).abs() / monitor.slew_per_s()
     };
     let braked = still.iter().filter(|moment| moment.duty == 0.0 && moment.t > alarm_s + braked_s);
     let braked: Vec<f64> = braked.filter_map(|moment| moment.current).collect();
