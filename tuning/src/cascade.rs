@@ -1,7 +1,7 @@
 //! A velocity PID with feed-forward, alone or under a position PID: the loop of many controllers, in simulation.
 
 use crate::gains::Gains;
-use crate::law::{Facts, Law, Seen};
+use crate::law::{Facts, Law, Seen, Windup};
 use crate::model::Lag;
 use crate::setpoint::Setpoint;
 
@@ -37,6 +37,8 @@ pub struct Manner {
     pub tick_s: f64,
     /// Whether the derivative of a position sees the filtered speed of the velocity loop.
     pub filters_derivative: bool,
+    /// What the integral of the speed does while the duty is cut.
+    pub windup: Windup,
 }
 
 impl Manner {
@@ -44,7 +46,8 @@ impl Manner {
     #[must_use]
     pub fn of<L: Law>(law: &L) -> Self {
         let (feed_forward, tick_s) = (law.feed_forward(), law.tick_s());
-        Self { feed_forward, tick_s, filters_derivative: law.derivative_filter().is_some() }
+        let filters_derivative = law.derivative_filter().is_some();
+        Self { feed_forward, tick_s, filters_derivative, windup: law.windup() }
     }
 }
 
@@ -88,11 +91,10 @@ impl Cascade {
         }
     }
 
-    /// Assumed: the loop knows what the current limit leaves and does not wind up against it.
     fn velocity(
         &mut self,
         (gains, qpps): (&Gains, f64),
-        Manner { feed_forward, tick_s, .. }: Manner,
+        Manner { feed_forward, tick_s, windup, .. }: Manner,
         setpoint: f64,
         seen: &Seen<'_>,
     ) -> f64 {
@@ -103,6 +105,12 @@ impl Cascade {
         self.integral += error * tick_s;
         let forward = feed_forward * setpoint;
         let wanted = (forward + gains.p * error + gains.i * self.integral + gains.d * slope) / qpps;
+        if windup == Windup::Held {
+            if wanted.abs() > 1.0 && wanted * error >= 0.0 {
+                self.integral -= error * tick_s;
+            }
+            return wanted.clamp(-1.0, 1.0);
+        }
         let (lowest, highest) = seen.duty_bounds();
         let duty = wanted.clamp(lowest, highest);
         if duty != wanted && gains.i > 0.0 {

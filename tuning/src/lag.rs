@@ -11,7 +11,7 @@
 //! over the length of one tick, and a register is half a tick old when it is read.
 
 use crate::experiment_guard::{ExperimentGuard, Input};
-use crate::law::Law;
+use crate::law::{Law, Windup};
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::model::{Gains, Lag, PlantModel};
 use crate::thresholds::thresholds;
@@ -64,6 +64,8 @@ thresholds! {
         by_misfit: (f64, f64) = (0.3, 2.0),
         /// Noise of the duty, as a share of full, at which the standard deviation doubles: a loop that the rounding of counts drives into its limits is no longer linear.
         loud_duty: f64 = 0.25,
+        /// How much larger it has to be for the other to be out of question: three standard deviations.
+        surely: f64 = 9.0,
         /// How much larger than the least the misfit of another minimum may be for it to count, in units of the reduced chi-square (of 1 where that is less).
         likely: f64 = 4.0,
     }
@@ -78,6 +80,14 @@ thresholds! {
         /// What the sum makes in a tick, as a share of P, from which on it is asked whether it is taken before or after the present error is added: below it the lags of both
         /// are within 0.5 ms of each other on 26 motors of another make.
         least_sum: f64 = 0.1,
+        /// Highest misfit of the duties of a start from rest, as a mean of squares over variances, at which a law is believed: on 515 starts of the bench, of another make and of a
+        /// foreign controller the better of both laws has 0.1 to 3 in the median of each, and up to 40 where something else was wrong.
+        most_of_start: f64 = 4.0,
+        /// How much worse the other law has to be, as a factor of the misfit. Of those starts 196 are told apart, 5 of them wrongly: tracking loops whose current limit lets the
+        /// current past it for a while. At 1.5 it is 8 of 221.
+        apart: f64 = 2.0,
+        /// Shares of the fitted filter that the record is asked about, shortest first.
+        filter_shares: [f64; 4] = [0.0, 0.25, 0.5, 0.75],
         /// Step by which slopes are taken, in units of each parameter.
         slope_step: f64 = 0.02,
         /// How far a parameter may lie outside its bounds, as a standard deviation in units of the parameter.
@@ -157,12 +167,16 @@ pub struct LagFit {
     pub tau_scale: f64,
     /// Reduced chi-square of the best.
     pub chi_square: f64,
-    /// Whether the speed may not be filtered at all, so that the whole lag lies between the controller and the torque, where a loop on the position meets it too.
+    /// The shortest filter on the speed that is likely, s: what it does not make of the lag lies between the controller and the torque, where a loop on the position meets it
+    /// too. `None` where it was not asked.
     #[serde(default)]
-    pub may_lack_filter: bool,
+    pub least_filter_s: Option<f64>,
     /// Whether the loop takes its sum the other way than the law that was asked about ([`Law::with_other_sum`]).
     #[serde(default)]
     pub has_other_sum: bool,
+    /// What its integral does while the duty is cut, as far as it showed.
+    #[serde(default)]
+    pub windup: Windup,
     /// How loud the duty of the loop was beside what the rounding of counts makes of it behind that lag.
     #[serde(default = "as_rounding")]
     pub loudness: f64,
@@ -191,13 +205,13 @@ pub struct Stretch {
     pub before: Option<f64>,
 }
 
-/// What a fit is asked beside the lag, each of which takes one more fit.
+/// What a fit is asked beside the lag.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Asked {
-    /// Whether the speed may not be filtered at all, which matters to loops on the position.
+    /// How short the filter on the speed may be, which matters to loops on the position.
     pub filter: bool,
-    /// Whether the loop takes its sum before or after the present error is added to it.
-    pub sum: bool,
+    /// What of the law only a loop shows that turns the motor: where it takes its sum, and what that does while the duty is cut.
+    pub law: bool,
 }
 
 /// Fits the lag. `sd_ln_tau` is how loosely the time constant is known.
@@ -221,7 +235,7 @@ pub fn fit_lag<L: Law>(
     let best = found.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
     let readings = known.readings.max(1) as f64;
     let doubt = |misfit: f64| LAG_WIDTHS.likely * (misfit / readings).max(1.0);
-    let other_sum = if asked.sum { with_other_sum(stretches, law) } else { None };
+    let other_sum = if asked.law { with_other_sum(stretches, law) } else { None };
     let other_sum = other_sum.as_ref().map(|(law, gains)| Known::new(gains, plant, law, qpps, sd_ln_tau));
     let by_other_sum = other_sum.as_ref().and_then(|other| other.fit_from(best.1.q));
     let has_other_sum = by_other_sum.as_ref().is_some_and(|other| other.0 + doubt(other.0) < best.0);
@@ -231,10 +245,7 @@ pub fn fit_lag<L: Law>(
     };
     let best = found.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
     let chi_square = best.0 / readings;
-    let likely = best.0 + doubt(best.0);
-    let without_filter = asked.filter.then(|| Known { has_filter: false, ..known.clone() });
-    let without_filter = without_filter.as_ref().and_then(|other| other.fit((0.0, STARTS[0].1)));
-    let may_lack_filter = without_filter.is_some_and(|other| other.0 <= likely);
+    let least_filter_s = asked.filter.then(|| known.least_filter_s(&best.1.q, best.0 + doubt(best.0)));
     let sharper = known.sharper(&best.1.q);
     let (known, found) = match &sharper {
         Some(sharper) => (sharper, found.iter().filter_map(|one| sharper.fit_from(one.1.q)).collect()),
@@ -247,9 +258,9 @@ pub fn fit_lag<L: Law>(
     let floor_s =
         LAG_WIDTHS.unmodelled.0.hypot(LAG_WIDTHS.unmodelled.1 * tick_s) * chi_square.clamp(least, most);
     let (mut shortest, mut longest) = (f64::INFINITY, 0.0_f64);
-    let is_likely = |misfit: f64| misfit <= best.0 + LAG_WIDTHS.likely * scale;
+    let likely = best.0 + doubt(best.0);
     let by_other_sum = by_other_sum.filter(|_| !has_other_sum);
-    for (_, problem) in found.iter().chain(&by_other_sum).filter(|other| is_likely(other.0)) {
+    for (_, problem) in found.iter().chain(&by_other_sum).filter(|other| other.0 <= likely) {
         let total = known.parts(&problem.q).iter().sum::<f64>();
         let sd = loud * (problem.deviation() * scale.sqrt()).hypot(floor_s);
         shortest = shortest.min(total - LAG_WIDTHS.deviations * sd);
@@ -266,8 +277,9 @@ pub fn fit_lag<L: Law>(
         interval_s: (shortest.max(0.0), longest),
         tau_scale,
         chi_square,
-        may_lack_filter,
+        least_filter_s: least_filter_s.map(|least_s| least_s.min(filter_s)),
         has_other_sum,
+        windup: if asked.law { known.windup(&best.1.q) } else { Windup::Open },
         loudness: as_rounding(),
     })
 }
@@ -293,8 +305,8 @@ struct Known<'a, L: Law> {
     qpps: f64,
     sd_ln_tau: f64,
     readings: usize,
-    /// Whether the speed may be filtered.
-    has_filter: bool,
+    /// The longest filter that the speed may have, s.
+    longest_filter_s: f64,
     /// Standard deviation of the counts, as a share of what is taken for granted of them.
     of_counts: f64,
 }
@@ -316,7 +328,7 @@ impl<'a, L: Law> Known<'a, L> {
             qpps,
             sd_ln_tau: (factor * sd_ln_tau).clamp(least, most),
             readings: stretches.iter().flat_map(|stretch| readings(&stretch.record)).sum(),
-            has_filter: true,
+            longest_filter_s: law.facts().filters_s.iter().copied().fold(0.0, f64::max),
             of_counts: 1.0,
         }
     }
@@ -331,6 +343,76 @@ impl<'a, L: Law> Known<'a, L> {
         let search = LevenbergMarquardt::new().with_patience(4).with_ftol(LAG.enough).with_xtol(LAG.enough);
         let (problem, report) = search.minimize(Problem { known: self, q: start });
         report.objective_function.is_finite().then_some((2.0 * report.objective_function, problem))
+    }
+
+    /// The shortest filter whose misfit is at most `likely`, s, among shares of the one of these parameters.
+    fn least_filter_s(&self, q: &Vector6<f64>, likely: f64) -> f64 {
+        let [filter_s, delay_s, _] = self.parts(q);
+        let is_likely = |share: &f64| {
+            let shorter = Self { longest_filter_s: share * filter_s, ..self.clone() };
+            // What the filter no longer makes of the lag is a delay.
+            let mut start = *q;
+            start[0] = share * filter_s / UNITS[0];
+            start[1] = (delay_s + (1.0 - share) * filter_s).min(self.longest()[1]) / UNITS[1];
+            shorter.fit_from(start).is_some_and(|other| other.0 <= likely)
+        };
+        LAG.filter_shares.into_iter().find(is_likely).unwrap_or(1.0) * filter_s
+    }
+
+    /// What the integral does while the duty is cut, by the duty that was read back while the loop started from rest, which asks for more than there is.
+    fn windup(&self, q: &Vector6<f64>) -> Windup {
+        let (Some(tracked), Some(held)) =
+            (self.start_misfit(q, Windup::Tracked), self.start_misfit(q, Windup::Held))
+        else {
+            return Windup::Open;
+        };
+        let (least, most, found) =
+            if tracked < held { (tracked, held, Windup::Tracked) } else { (held, tracked, Windup::Held) };
+        let readings: usize = self.starting().map(|(stretch, _)| stretch.record.starting_duties()).sum();
+        let mean = least / readings.max(1) as f64;
+        let is_told = mean <= LAG.most_of_start
+            && most > LAG.apart * least
+            && most - least > LAG_WIDTHS.surely * mean.max(1.0);
+        if is_told { found } else { Windup::Open }
+    }
+
+    /// The stretches that began at rest, each with the noise of its duty.
+    fn starting(&self) -> impl Iterator<Item = (&Stretch, f64)> {
+        let all = self.stretches.iter().zip(self.noises.iter().copied());
+        all.filter(|(stretch, _)| stretch.before.is_none())
+    }
+
+    /// How badly the duties of a start from rest fit a loop whose integral does that; `None` where it is known what it does, or nothing was read.
+    fn start_misfit(&self, q: &Vector6<f64>, windup: Windup) -> Option<f64> {
+        let law = self.law.with_windup(windup)?;
+        let mut all = Vec::new();
+        for (stretch, noise) in self.starting() {
+            let record = &stretch.record;
+            let followed = Followed::new(record, self.twin(q, &law, stretch), &law, q[4] * UNITS[4], None)?;
+            duty_misfits(record, &followed, |t| t < record.judged_from_s(), noise, &mut all);
+        }
+        (!all.is_empty()).then(|| all.iter().map(|rest| rest * rest).sum())
+    }
+
+    /// The loop of these parameters under a law, as a stretch finds it.
+    fn twin(&self, q: &Vector6<f64>, law: &L, stretch: &Stretch) -> TickLoop<L> {
+        let [filter_s, delay_s, winding_s] = self.parts(q);
+        let lag = Lag { filter_s, delay_ticks: delay_s / law.tick_s() };
+        let mut twin = TickLoop::new(self.motor(q), *law, lag, stretch.gains, self.qpps).smooth();
+        twin.winding_s = winding_s;
+        if let Some(speed) = stretch.before {
+            twin.start_steady(speed);
+        }
+        twin
+    }
+
+    /// The motor of these parameters.
+    fn motor(&self, q: &Vector6<f64>) -> PlantModel {
+        PlantModel {
+            tau_s: self.plant.tau_s * (q[3] * UNITS[3]).clamp(-2.0, 2.0).exp(),
+            gain_counts_per_s: self.plant.gain_counts_per_s * (q[5] * UNITS[5]).clamp(-0.5, 0.5).exp(),
+            ..self.plant
+        }
     }
 
     /// With the counts trusted more, where their times are known better than is taken for granted.
@@ -361,10 +443,8 @@ impl<'a, L: Law> Known<'a, L> {
 
     /// The longest filter and delay that the law may have, s.
     fn longest(&self) -> [f64; 2] {
-        let facts = self.law.facts();
-        let most = |all: &[f64]| all.iter().copied().fold(0.0, f64::max);
-        let longest_filter = if self.has_filter { most(facts.filters_s) } else { 0.0 };
-        [longest_filter, most(facts.delays_ticks) * self.law.tick_s()]
+        let longest_delay = self.law.facts().delays_ticks.iter().copied().fold(0.0, f64::max);
+        [self.longest_filter_s, longest_delay * self.law.tick_s()]
     }
 
     /// Start values within the bounds.
@@ -384,26 +464,17 @@ impl<'a, L: Law> Known<'a, L> {
     fn residuals(&self, q: &Vector6<f64>) -> DVector<f64> {
         let [filter_s, delay_s, winding_s] = self.parts(q);
         let tick_s = self.law.tick_s();
-        let lag = Lag { filter_s, delay_ticks: delay_s / tick_s };
-        let model = PlantModel {
-            tau_s: self.plant.tau_s * (q[3] * UNITS[3]).clamp(-2.0, 2.0).exp(),
-            gain_counts_per_s: self.plant.gain_counts_per_s * (q[5] * UNITS[5]).clamp(-0.5, 0.5).exp(),
-            ..self.plant
-        };
+        let motor = self.motor(q);
+        let whole = Lag { filter_s, delay_ticks: (delay_s + winding_s) / tick_s };
         let offset_s = q[4] * UNITS[4];
         let mut all = Vec::with_capacity(self.readings + 12);
         for (stretch, noise) in self.stretches.iter().zip(&self.noises) {
-            let mut twin = TickLoop::new(model, self.law, lag, stretch.gains, self.qpps).smooth();
-            twin.winding_s = winding_s;
-            if let Some(speed) = stretch.before {
-                twin.start_steady(speed);
-            }
+            let twin = self.twin(q, &self.law, stretch);
             let from = all.len();
             misfits(&stretch.record, twin, &self.law, offset_s, stretch.before, *noise, &mut all);
             let [counts, _] = readings(&stretch.record);
             all.iter_mut().skip(from).take(counts).for_each(|rest| *rest /= self.of_counts);
-            let whole = Lag { delay_ticks: (delay_s + winding_s) / tick_s, ..lag };
-            let predicted = LoopPlant::new(DiscretePlant::of(&model, tick_s), &self.law, whole)
+            let predicted = LoopPlant::new(DiscretePlant::of(&motor, tick_s), &self.law, whole)
                 .margins(&stretch.gains, self.qpps)
                 .noise_duty;
             all.push(soft((noise / predicted.hypot(LAG_PRIORS.duty)).ln() / LAG_PRIORS.rounding));
@@ -602,6 +673,12 @@ pub(crate) fn predicted_record<L: Law>(
 }
 
 impl ClosedLoopRecord {
+    /// How many duties were read before it is judged.
+    fn starting_duties(&self) -> usize {
+        let from_s = self.judged_from_s();
+        self.duties.iter().filter(|duty| duty.0 < from_s).count()
+    }
+
     /// The start from rest is the business of friction and of the current limit, not of the lag: a record is judged from here on.
     fn judged_from_s(&self) -> f64 {
         self.setpoints.get(1).map_or(0.0, |second| second.0 - 0.01)
@@ -620,12 +697,22 @@ fn misfits<L: Law>(
     all: &mut Vec<f64>,
 ) {
     let Some(followed) = Followed::new(record, twin, law, offset_s, before) else { return };
-    let tick_s = law.tick_s();
     let from_s = record.judged_from_s();
-    let age_s = if record.is_dated { 0.0 } else { tick_s / 12.0_f64.sqrt() };
+    count_misfits(record, &followed, |t| t >= from_s, all);
+    duty_misfits(record, &followed, |t| t > from_s, noise, all);
+}
+
+/// Those of the counts of some times.
+fn count_misfits(
+    record: &ClosedLoopRecord,
+    followed: &Followed,
+    is_judged: impl Fn(f64) -> bool,
+    all: &mut Vec<f64>,
+) {
+    let age_s = if record.is_dated { 0.0 } else { followed.tick_s / 12.0_f64.sqrt() };
     let stamp_s = LAG_PRIORS.stamp_s.hypot(record.stamp_s).hypot(age_s);
     let mut drift: Option<(f64, f64, f64, f64)> = None;
-    for &(t, count) in record.counts.iter().filter(|count| count.0 >= from_s) {
+    for &(t, count) in record.counts.iter().filter(|count| is_judged(count.0)) {
         let position = followed.position_at(t);
         let error = count - position;
         drift = Some(match drift {
@@ -643,8 +730,18 @@ fn misfits<L: Law>(
             }
         });
     }
-    let half_s = 0.5 * tick_s + 0.001;
-    let judged = record.duties.iter().filter(|duty| duty.0 > from_s);
+}
+
+/// Those of the duties of some times.
+fn duty_misfits(
+    record: &ClosedLoopRecord,
+    followed: &Followed,
+    is_judged: impl Fn(f64) -> bool,
+    noise: f64,
+    all: &mut Vec<f64>,
+) {
+    let half_s = 0.5 * followed.tick_s + 0.001;
+    let judged = record.duties.iter().filter(|duty| is_judged(duty.0));
     let compared: Vec<(f64, f64)> = judged
         .map(|&(t, duty)| {
             let flank = followed.duty_at(t + half_s) - followed.duty_at(t - half_s);
@@ -692,7 +789,10 @@ mod tests {
 
     /// The same with counts of a given age, ticks, in each poll.
     fn record_with(lag: Lag, age_ticks: fn(usize) -> f64) -> Stretch {
-        let law = PlainLaw::default();
+        record_of(PlainLaw::default(), lag, age_ticks)
+    }
+
+    fn record_of(law: PlainLaw, lag: Lag, age_ticks: fn(usize) -> f64) -> Stretch {
         let mut twin = TickLoop::new(PLANT, law, lag, GAINS, 40_000.0);
         let mut record = ClosedLoopRecord::default();
         for n in 0..5 {
@@ -732,7 +832,7 @@ mod tests {
                 &law,
                 40_000.0,
                 0.03,
-                Asked { filter: true, sum: true },
+                Asked { filter: true, law: true },
             )
             .expect("enough readings");
             let (got, wanted) = (found.lag.total_s(law.tick_s()), lag.total_s(law.tick_s()));
@@ -756,7 +856,7 @@ mod tests {
         let (sharp, ticked) = (about(&timed), about(&of_last_tick));
         assert!(sharp < 0.5 * LAG.sharp_counts && ticked > LAG.sharp_counts, "{sharp} and {ticked}");
         for stretch in [timed, of_last_tick] {
-            let found = fit_lag(&[stretch], &PLANT, &law, 40_000.0, 0.03, Asked { filter: true, sum: true })
+            let found = fit_lag(&[stretch], &PLANT, &law, 40_000.0, 0.03, Asked { filter: true, law: true })
                 .expect("enough readings");
             let (low_s, high_s) = found.interval_s;
             assert!((low_s..=high_s).contains(&lag.total_s(law.tick_s())), "{found:?}");
@@ -766,10 +866,10 @@ mod tests {
     #[test]
     fn a_lag_without_a_filter_is_not_put_down_to_one_and_a_long_filter_is_seen() {
         let law = PlainLaw::default();
-        for (lag, may_lack_filter) in [
-            (Lag { filter_s: 0.0, delay_ticks: 0.5 }, true),
-            (Lag { filter_s: 0.0, delay_ticks: 1.0 }, true),
-            (Lag { filter_s: 0.010, delay_ticks: 0.0 }, false),
+        for (lag, least_s) in [
+            (Lag { filter_s: 0.0, delay_ticks: 0.5 }, 0.0..=0.0),
+            (Lag { filter_s: 0.0, delay_ticks: 1.0 }, 0.0..=0.0),
+            (Lag { filter_s: 0.010, delay_ticks: 0.0 }, 0.004..=0.010),
         ] {
             let found = fit_lag(
                 &[known_record(lag)],
@@ -777,10 +877,28 @@ mod tests {
                 &law,
                 40_000.0,
                 0.03,
-                Asked { filter: true, sum: true },
+                Asked { filter: true, law: true },
             )
             .expect("enough readings");
-            assert_eq!(found.may_lack_filter, may_lack_filter, "{lag:?}: {found:?}");
+            assert!(found.least_filter_s.is_some_and(|found| least_s.contains(&found)), "{lag:?}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn what_the_integral_does_at_full_duty_shows_in_the_start_from_rest() {
+        let asked = Asked { filter: false, law: true };
+        for windup in [Windup::Tracked, Windup::Held] {
+            let law = PlainLaw { windup, ..PlainLaw::default() };
+            let stretch = record_of(law, Lag { filter_s: 0.004, delay_ticks: 1.0 }, |_| 0.5);
+            let found = |gains: Gains| {
+                let stretch = Stretch { gains, ..stretch.clone() };
+                fit_lag(&[stretch], &PLANT, &PlainLaw::default(), 40_000.0, 0.03, asked)
+                    .expect("enough readings")
+                    .windup
+            };
+            assert_eq!(found(GAINS), windup);
+            // Neither does what was read.
+            assert_eq!(found(Gains { velocity: Pid { p: 0.3, ..GAINS.velocity }, ..GAINS }), Windup::Open);
         }
     }
 

@@ -11,8 +11,8 @@ use crate::gains::Gains;
 use crate::model::{DerivativeFilter, Lag, Motion, PlantModel};
 use crate::open_loop_record::Actuation;
 use crate::setpoint::Setpoint;
-use serde::Serialize;
 use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
 
 /// Properties of a law that runs and designs go by.
@@ -55,6 +55,25 @@ pub struct Stamps {
     pub open_s: f64,
     /// Each comes with the controller's own time, so that it is known to much less than a tick.
     pub are_dated: bool,
+}
+
+/// What the integral of a velocity loop does while its duty is cut.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Windup {
+    /// Not known: taken to be tracked, and designed for both.
+    #[default]
+    Open,
+    /// It follows what is left of the duty, by full duty and by the current limit (back-calculation).
+    Tracked,
+    /// It stands still as long as more than full duty is asked for (conditional integration), and goes on while the current limit cuts the duty, which the loop does not
+    /// know of.
+    Held,
+}
+
+/// The law that a loop may follow as well while its duty is cut, where that is open.
+pub(crate) fn other_windup<L: Law>(law: &L) -> Option<L> {
+    if law.windup() == Windup::Open { law.with_windup(Windup::Held) } else { None }
 }
 
 /// What a tick of the loop sees.
@@ -136,6 +155,14 @@ pub trait Law:
     /// The law whose velocity loop takes its sum before the present error is added to it, or after it, whichever this one does not, and what gains of this law are under
     /// it; `None` where it is known which.
     fn with_other_sum(&self, _gains: &Gains) -> Option<(Self, Gains)> {
+        None
+    }
+    /// What its integral does while the duty is cut.
+    fn windup(&self) -> Windup {
+        Windup::Tracked
+    }
+    /// The law that does otherwise there; `None` where it is known what it does.
+    fn with_windup(&self, _windup: Windup) -> Option<Self> {
         None
     }
     /// The limit of the duty by which the current is held, where it is not the current itself that is limited.

@@ -3,7 +3,7 @@
 use crate::axis::AxisError;
 use crate::cascade::{CASCADE, Cascade, Manner};
 use crate::gains::Gains;
-use crate::law::{Ending, Facts, Law, Seen};
+use crate::law::{Ending, Facts, Law, Seen, Windup};
 use crate::law_probe::LawProbe;
 use crate::setpoint::Setpoint;
 use serde::{Deserialize, Serialize};
@@ -15,11 +15,14 @@ pub struct PlainLaw {
     pub rate_hz: u32,
     /// Whether the setpoint's share of QPPS is added to the duty.
     pub feed_forward: bool,
+    /// What its integral does while the duty is cut.
+    #[serde(default)]
+    pub windup: Windup,
 }
 
 impl Default for PlainLaw {
     fn default() -> Self {
-        Self { rate_hz: 300, feed_forward: true }
+        Self { rate_hz: 300, feed_forward: true, windup: Windup::Open }
     }
 }
 
@@ -50,6 +53,14 @@ impl Law for PlainLaw {
 
     fn feed_forward(&self) -> f64 {
         f64::from(u8::from(self.feed_forward))
+    }
+
+    fn windup(&self) -> Windup {
+        self.windup
+    }
+
+    fn with_windup(&self, windup: Windup) -> Option<Self> {
+        Some(Self { windup, ..*self })
     }
 
     fn tick(&self, state: &mut Cascade, gains: (&Gains, f64), setpoint: Setpoint, seen: &Seen<'_>) -> f64 {

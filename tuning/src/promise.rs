@@ -127,6 +127,7 @@ fn settling(likely: &Forecast, others: &[[Forecast; 2]], tick_s: f64) -> (f64, f
 mod tests {
     use super::*;
     use crate::design::{Goal, USUAL_OVERSHOOT, design_pd, design_velocity};
+    use crate::law::Windup;
     use crate::plain_law::PlainLaw;
 
     fn known(sd: f64, chi_square: f64) -> (Task<PlainLaw>, Fit, LagFit) {
@@ -175,7 +176,8 @@ mod tests {
                 interval_s,
                 tau_scale: 1.0,
                 chi_square,
-                may_lack_filter: false,
+                least_filter_s: None,
+                windup: Windup::Open,
                 has_other_sum: false,
                 loudness: 1.0,
             },

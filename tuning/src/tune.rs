@@ -15,7 +15,7 @@ use crate::lag::{Asked, LagFit};
 use crate::law::Law;
 use crate::law_probe::LawProbe;
 use crate::linear::{DiscretePlant, LoopPlant};
-use crate::model::{Gains, Lag, Pid, PlantModel};
+use crate::model::{DerivativeFilter, Gains, Lag, Pid, PlantModel};
 use crate::moves::by_moves;
 use crate::open_loop_record::OpenLoopRecord;
 pub use crate::proposal::{design_for, propose};
@@ -518,7 +518,10 @@ fn settle_lag<L: Law>(
     let registers = guard.write_gains(&task.law, &design.gains, task.qpps)?;
     let gains = task.law.gains(&registers, task.qpps, false);
     let sd_ln_tau = report.fit.map_or(0.1, |fit| fit.sd_ln_tau);
-    let asked = Asked { filter: request.method != Method::Velocity, sum: request.probe_law };
+    let asked = Asked {
+        filter: request.method != Method::Velocity,
+        law: request.probe_law && guard.facts.can_be_probed,
+    };
     let measured = match measure_lag(guard, &careful, &gains, sd_ln_tau, (request.excitation, asked)) {
         // Too little room for strokes.
         Err(Cause::TravelLimit) if request.excitation != Excitation::Free => {
@@ -536,9 +539,10 @@ fn settle_lag<L: Law>(
         && let Some((law, _)) = task.law.with_other_sum(&gains)
     {
         task.law = law;
-        guard.law = law;
-        report.request.law = law;
     }
+    task.law = task.law.with_windup(found.windup).filter(|_| asked.law).unwrap_or(task.law);
+    guard.law = task.law;
+    report.request.law = task.law;
     Ok(with_lag(Task { noise_factor: found.loudness, ..task }, &found))
 }
 
@@ -551,7 +555,7 @@ fn unfiltered<L: Law>(task: Task<L>) -> Task<L> {
     Task { noise_factor: task.noise_factor * louder.max(1.0), ..task }
 }
 
-/// The task of a loop on the position: its speed alone meets a filter, all of it meets a delay. Where the record does not tell them apart, all is a delay at the
+/// The task of a loop on the position: its speed alone meets a filter, all of it meets a delay. As far as the record does not tell them apart, it is a delay at the
 /// worst. How smooth the duty of a derivative is tells its filter by itself.
 fn with_known_filter<L: Law>(request: &Request<L>, report: &Report<L>, task: Task<L>) -> Task<L> {
     let tick_s = task.law.tick_s();
@@ -560,6 +564,9 @@ fn with_known_filter<L: Law>(request: &Request<L>, report: &Report<L>, task: Tas
     let own_noise = report.law.as_ref().filter(|_| has_derivative).and_then(L::derivative_noise);
     let task = Task { noise_factor: own_noise.unwrap_or(task.noise_factor), ..task };
     if let Some(seen) = task.law.derivative_filter().filter(|_| has_derivative) {
+        // Longer than all that the loop loses it is none: polls in step with the counts make a duty smooth.
+        let is_longer = report.lag.is_some_and(|lag| seen.least_s > lag.interval_s.1);
+        let seen = if is_longer { DerivativeFilter { likely_s: 0.0, least_s: 0.0 } } else { seen };
         // A lag that was not measured is no shorter than the filter that was.
         let least_s = if report.lag.is_some() { 0.0 } else { seen.likely_s };
         let split = |lag: Lag, filter_s: f64| {
@@ -568,11 +575,10 @@ fn with_known_filter<L: Law>(request: &Request<L>, report: &Report<L>, task: Tas
         let (lag, worst_lag) = (split(task.lag, seen.likely_s), split(task.worst_lag, seen.least_s));
         return Task { lag, worst_lag, ..task };
     }
-    let may_lack_filter = report.lag.is_some_and(|lag| lag.may_lack_filter);
-    if request.method == Method::Velocity || !may_lack_filter {
-        return task;
+    match report.lag.and_then(|lag| lag.least_filter_s) {
+        Some(least_s) => Task { worst_lag: task.worst_lag.with_filter(least_s, tick_s), ..task },
+        None => task,
     }
-    Task { worst_lag: task.worst_lag.with_filter(0.0, tick_s), ..task }
 }
 
 fn with_lag<L: Law>(task: Task<L>, found: &LagFit) -> Task<L> {

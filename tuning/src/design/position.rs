@@ -2,7 +2,7 @@
 
 use super::search::{Candidate, Loops, ascend, better, finish};
 use super::task::{Design, Goal, Task};
-use crate::law::Law;
+use crate::law::{Law, other_windup};
 use crate::model::{Gains, Lag, Pid};
 use crate::score::{POSITION_OVERSHOOT, position_step};
 use crate::thresholds::thresholds;
@@ -283,7 +283,10 @@ impl Move {
 fn candidate<L: Law>(task: &Task<L>, gains: Gains) -> Candidate {
     let gains = task.law.rounded(&gains, task.qpps);
     let (score, end) = position_test_and_end(&task.plant, &task.law, task.lag, &gains, task.qpps);
-    let excess = (score.overshoot - POSITION.overshoot_cap).max(0.0)
+    let held = other_windup(&task.law)
+        .filter(|_| gains.velocity.i > 0.0)
+        .map_or(0.0, |law| position_test_and_end(&task.plant, &law, task.lag, &gains, task.qpps).0.overshoot);
+    let excess = (score.overshoot.max(held) - POSITION.overshoot_cap).max(0.0)
         + 0.5 * (end.duty.0.max(end.duty.1) - POSITION.late_duty_cap).max(0.0);
     let step = position_step(task.plant.gain_counts_per_s, task.plant.tau_s);
     let allowed = (POSITION.late_distance_cap * step).max(POSITION.late_counts_cap);

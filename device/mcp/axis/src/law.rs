@@ -11,7 +11,7 @@ use brushwork_tuning::cascade::{CASCADE, Cascade, Manner};
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::experiment_guard::ExperimentGuard;
 use brushwork_tuning::joined::LeadingLaw;
-use brushwork_tuning::law::{Ending, Facts, Law, Seen};
+use brushwork_tuning::law::{Ending, Facts, Law, Seen, Windup};
 use brushwork_tuning::law_probe::LawProbe;
 use brushwork_tuning::model::{DerivativeFilter, Gains, Pid};
 use brushwork_tuning::setpoint::Setpoint;
@@ -49,6 +49,14 @@ impl Law for McpLaw {
         let Pid { p, i, .. } = gains.velocity;
         let velocity = Pid { p: p + i * (self.sum_late_s() - other.sum_late_s()), ..gains.velocity };
         Some((other, Gains { velocity, ..*gains }))
+    }
+
+    fn windup(&self) -> Windup {
+        self.windup
+    }
+
+    fn with_windup(&self, windup: Windup) -> Option<Self> {
+        Some(Self { windup, ..*self })
     }
 
     fn tick(&self, state: &mut Cascade, gains: (&Gains, f64), setpoint: Setpoint, seen: &Seen<'_>) -> f64 {

@@ -9,7 +9,7 @@ use crate::probed::{Probed, QPPS, RATES_HZ, gains};
 use crate::registers::{McpLaw, McpWrite, PositionRegisters, VELOCITY_SCALE};
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::experiment_guard::{ExperimentGuard, Point};
-use brushwork_tuning::law::Law;
+use brushwork_tuning::law::{Law, Windup};
 use brushwork_tuning::law_probe::speed_step;
 use brushwork_tuning::model::DerivativeFilter;
 use brushwork_tuning::settle::slope;
@@ -112,8 +112,9 @@ impl LawFindings {
             feed_forward,
             velocity_scale,
             integral_scale,
-            // Found out by the loop itself, from the usual one.
+            // Found out by the loop itself, from the usual ones.
             forward_sum: false,
+            windup: Windup::Open,
             derivative_s: None,
             derivative_filter: self.derivative_filter,
         };

@@ -1,7 +1,7 @@
 //! Gains as the registers of a controller, and back: the rounded gains are what the loop gets.
 
 use brushwork_tuning::axis::AxisError;
-use brushwork_tuning::law::Law;
+use brushwork_tuning::law::{Law, Windup};
 use brushwork_tuning::model::{DerivativeFilter, Gains, Pid};
 use serde::{Deserialize, Serialize};
 
@@ -32,6 +32,9 @@ pub struct McpLaw {
     /// Whether the velocity loop takes its sum before the present error is added to it (forward Euler), not after (backward Euler).
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub forward_sum: bool,
+    /// What the integral of the velocity loop does while its duty is cut.
+    #[serde(default, skip_serializing_if = "is_open")]
+    pub windup: Windup,
     /// Seconds that a position D of 1 multiplies the speed with, where that is not what I counts by.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub derivative_s: Option<f64>,
@@ -47,6 +50,11 @@ fn usual_scale() -> f64 {
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
 fn is_usual_scale(scale: &f64) -> bool {
     *scale == VELOCITY_SCALE
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
+fn is_open(windup: &Windup) -> bool {
+    *windup == Windup::Open
 }
 
 /// A share as files have it: reports of earlier versions know all or nothing.
@@ -88,6 +96,7 @@ impl Default for McpLaw {
             velocity_scale: VELOCITY_SCALE,
             integral_scale: VELOCITY_SCALE,
             forward_sum: false,
+            windup: Windup::Open,
             derivative_s: None,
             derivative_filter: None,
         }

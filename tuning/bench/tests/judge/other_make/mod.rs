@@ -7,6 +7,7 @@ mod machine;
 use brushwork_mcp_axis::McpLaw;
 use brushwork_tuning::cause::Cause;
 use brushwork_tuning::experiment_guard::GuardOptions;
+use brushwork_tuning::law::Windup;
 use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::tune::{Method, Request, tune};
 use controller::{Controller, Fault, LawOptions, NOISE_AMPS, sensitivity};
@@ -301,6 +302,17 @@ fn whether_the_sum_is_taken_before_the_error_is_added_is_found_out() {
             run.line
         );
     }
+}
+
+/// Its sum stands still while more than full duty is asked for, and does not know of the current limit. Taken to follow what is left of the duty, as that of the simulated controllers
+/// does, gains were slow or went up to 29 % past the setpoint.
+#[test]
+fn what_the_sum_does_while_the_duty_is_cut_is_found_out_or_left_open() {
+    let found: Vec<Windup> =
+        (0..24).map(|number| Run::of(1_006, number, |_| {}).report.request.law.windup).collect();
+    println!("{found:?}");
+    assert!(!found.contains(&Windup::Tracked), "{found:?}");
+    assert!(found.iter().filter(|windup| **windup == Windup::Held).count() >= 6, "{found:?}");
 }
 
 /// In identification and in trials, of velocity and PIV. A sensor with noise called open motors unclear, since the current of the open motor is no more than the noise;
