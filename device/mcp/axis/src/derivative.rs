@@ -53,6 +53,9 @@ const FASTER: [f64; 2] = [0.1, 0.2];
 /// D's duty is that of a filtered speed below such a share of what differences of whole counts make: a filter of one tick leaves three tenths of it, twenty readings
 /// spread by a third.
 const FILTERED: f64 = 0.4;
+/// From such a share on it is that of whole counts. Of 365 motors of another make (seeds 1002, 1003, 1009 and 1011) 5 % of those whose D sees whole counts are between the two, and 6 of 93 whose D
+/// sees a filtered speed, which cogs made rough: one was called tuned at a true Ms of 2.2.
+const WHOLE: f64 = 0.6;
 /// Harmonics of the rounding that are summed, of which the last are a thousandth, and how a filter is searched for: the least that it lets through in a tick, as a share.
 const HARMONICS: u32 = 60;
 const LEAST_SHARE_OF_TICK: f64 = 0.01;
@@ -125,7 +128,8 @@ pub(crate) fn derivative_under<L: Law>(
                 let other = creeps(direction, duty + more * CREEP_DUTY, d)?;
                 told = Told::of_both(told, other.and_then(|turned| turned.told(rate_hz)));
             }
-            let filter = told.map_or(Some(UNKNOWN), |told| told.filter);
+            let is_open = told.is_none_or(|told| told.filter.is_none() && told.roughness < WHOLE);
+            let filter = if is_open { Some(UNKNOWN) } else { told.and_then(|told| told.filter) };
             let roughness = told.map(|told| told.roughness);
             return Ok(Some(DerivativeFound { seconds: found, roughness, filter }));
         }
@@ -152,12 +156,14 @@ fn coast<L: Law>(guard: &mut Probed<'_, '_, L>) -> Result<(), Cause> {
     Ok(())
 }
 
-/// What is found as what it is taken to be: one tick, one second, or itself. A step of the speed over two ticks tells half the rate of the loop.
+/// What is found as what it is taken to be: one tick of the loop, one second, one of the usual ticks, since a step of the speed over two ticks tells half the rate of the
+/// loop, or itself.
 pub(crate) fn known_derivative_s(found: f64, law: &McpLaw) -> f64 {
-    let ticks = [law.rate_hz].into_iter().chain(RATES_HZ).map(|rate_hz| 1.0 / f64::from(rate_hz));
     let off = |known: f64| (found / known).ln().abs();
-    let nearest = ticks.chain([1.0]).min_by(|a, b| off(*a).total_cmp(&off(*b)));
-    nearest.filter(|known| off(*known) < KNOWN_WITHIN.ln()).unwrap_or(found)
+    let is_near = |known: &f64| off(*known) < KNOWN_WITHIN.ln();
+    let tick_s = |rate_hz: u32| 1.0 / f64::from(rate_hz);
+    let usual = RATES_HZ.map(tick_s).into_iter().min_by(|a, b| off(*a).total_cmp(&off(*b)));
+    [tick_s(law.rate_hz), 1.0].into_iter().chain(usual).find(is_near).unwrap_or(found)
 }
 
 /// Where the motor may creep.
@@ -374,6 +380,8 @@ mod tests {
         assert_eq!(known_derivative_s(0.0014, &law), 0.0016);
         assert_eq!(known_derivative_s(0.0035, &law), 1.0 / 300.0);
         assert_eq!(known_derivative_s(0.0017, &McpLaw { rate_hz: 312, ..law }), 0.0016);
+        // Read off the few counts of a coarse encoder; nearer to the tick of another loop.
+        assert_eq!(known_derivative_s(0.00232, &law), 0.0016);
         assert_eq!(known_derivative_s(1.3, &law), 1.0);
         assert_eq!(known_derivative_s(0.05, &law), 0.05);
     }
