@@ -8,7 +8,7 @@ use crate::cause::Cause;
 use crate::duty_limiter::DutyLimit;
 use crate::experiment_guard::ExperimentGuard;
 use crate::gains::Gains;
-use crate::law::{Ending, Facts, Law, Seen, Stamps};
+use crate::law::{Ending, Facts, Law, Seen, Stamps, Windup};
 use crate::law_probe::LawProbe;
 use crate::model::DerivativeFilter;
 use crate::open_loop_record::Actuation;
@@ -141,6 +141,17 @@ impl<A: LeadingLaw, P: LawPart> Law for Both<A, P> {
         match self.second.law() {
             Some(law) => law.with_other_sum(gains).map(|(law, gains)| (Self::second(law), gains)),
             None => self.first.with_other_sum(gains).map(|(first, gains)| (Self { first, ..*self }, gains)),
+        }
+    }
+
+    fn windup(&self) -> Windup {
+        of_law!(self.windup())
+    }
+
+    fn with_windup(&self, windup: Windup) -> Option<Self> {
+        match self.second.law() {
+            Some(law) => law.with_windup(windup).map(Self::second),
+            None => self.first.with_windup(windup).map(|first| Self { first, ..*self }),
         }
     }
 

@@ -64,8 +64,6 @@ thresholds! {
         by_misfit: (f64, f64) = (0.3, 2.0),
         /// Noise of the duty, as a share of full, at which the standard deviation doubles: a loop that the rounding of counts drives into its limits is no longer linear.
         loud_duty: f64 = 0.25,
-        /// How much larger it has to be for the other to be out of question: three standard deviations.
-        surely: f64 = 9.0,
         /// How much larger than the least the misfit of another minimum may be for it to count, in units of the reduced chi-square (of 1 where that is less).
         likely: f64 = 4.0,
     }
@@ -80,12 +78,6 @@ thresholds! {
         /// What the sum makes in a tick, as a share of P, from which on it is asked whether it is taken before or after the present error is added: below it the lags of both
         /// are within 0.5 ms of each other on 26 motors of another make.
         least_sum: f64 = 0.1,
-        /// Highest misfit of the duties of a start from rest, as a mean of squares over variances, at which a law is believed: on 515 starts of the bench, of another make and of a
-        /// foreign controller the better of both laws has 0.1 to 3 in the median of each, and up to 40 where something else was wrong.
-        most_of_start: f64 = 4.0,
-        /// How much worse the other law has to be, as a factor of the misfit. Of those starts 196 are told apart, 5 of them wrongly: tracking loops whose current limit lets the
-        /// current past it for a while. At 1.5 it is 8 of 221.
-        apart: f64 = 2.0,
         /// Shares of the fitted filter that the record is asked about, shortest first.
         filter_shares: [f64; 4] = [0.0, 0.25, 0.5, 0.75],
         /// Step by which slopes are taken, in units of each parameter.
@@ -194,6 +186,15 @@ impl LagFit {
     }
 }
 
+/// How badly a start fits a loop.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StartMisfit {
+    /// Sum of squares, in variances of the duty.
+    pub(crate) squares: f64,
+    /// How many duties were read.
+    pub(crate) readings: usize,
+}
+
 /// Some seconds of a loop under known gains.
 #[derive(Clone, Debug)]
 pub struct Stretch {
@@ -210,7 +211,8 @@ pub struct Stretch {
 pub struct Asked {
     /// How short the filter on the speed may be, which matters to loops on the position.
     pub filter: bool,
-    /// What of the law only a loop shows that turns the motor: where it takes its sum, and what that does while the duty is cut.
+    /// What of the law only a loop shows that turns the motor: whether it takes its sum before or after the present error is added to it, and what its integral does while the
+    /// duty is cut. The latter the fit leaves open.
     pub law: bool,
 }
 
@@ -279,7 +281,7 @@ pub fn fit_lag<L: Law>(
         chi_square,
         least_filter_s: least_filter_s.map(|least_s| least_s.min(filter_s)),
         has_other_sum,
-        windup: if asked.law { known.windup(&best.1.q) } else { Windup::Open },
+        windup: Windup::Open,
         loudness: as_rounding(),
     })
 }
@@ -359,62 +361,6 @@ impl<'a, L: Law> Known<'a, L> {
         LAG.filter_shares.into_iter().find(is_likely).unwrap_or(1.0) * filter_s
     }
 
-    /// What the integral does while the duty is cut, by the duty that was read back while the loop started from rest, which asks for more than there is.
-    fn windup(&self, q: &Vector6<f64>) -> Windup {
-        let (Some(tracked), Some(held)) =
-            (self.start_misfit(q, Windup::Tracked), self.start_misfit(q, Windup::Held))
-        else {
-            return Windup::Open;
-        };
-        let (least, most, found) =
-            if tracked < held { (tracked, held, Windup::Tracked) } else { (held, tracked, Windup::Held) };
-        let readings: usize = self.starting().map(|(stretch, _)| stretch.record.starting_duties()).sum();
-        let mean = least / readings.max(1) as f64;
-        let is_told = mean <= LAG.most_of_start
-            && most > LAG.apart * least
-            && most - least > LAG_WIDTHS.surely * mean.max(1.0);
-        if is_told { found } else { Windup::Open }
-    }
-
-    /// The stretches that began at rest, each with the noise of its duty.
-    fn starting(&self) -> impl Iterator<Item = (&Stretch, f64)> {
-        let all = self.stretches.iter().zip(self.noises.iter().copied());
-        all.filter(|(stretch, _)| stretch.before.is_none())
-    }
-
-    /// How badly the duties of a start from rest fit a loop whose integral does that; `None` where it is known what it does, or nothing was read.
-    fn start_misfit(&self, q: &Vector6<f64>, windup: Windup) -> Option<f64> {
-        let law = self.law.with_windup(windup)?;
-        let mut all = Vec::new();
-        for (stretch, noise) in self.starting() {
-            let record = &stretch.record;
-            let followed = Followed::new(record, self.twin(q, &law, stretch), &law, q[4] * UNITS[4], None)?;
-            duty_misfits(record, &followed, |t| t < record.judged_from_s(), noise, &mut all);
-        }
-        (!all.is_empty()).then(|| all.iter().map(|rest| rest * rest).sum())
-    }
-
-    /// The loop of these parameters under a law, as a stretch finds it.
-    fn twin(&self, q: &Vector6<f64>, law: &L, stretch: &Stretch) -> TickLoop<L> {
-        let [filter_s, delay_s, winding_s] = self.parts(q);
-        let lag = Lag { filter_s, delay_ticks: delay_s / law.tick_s() };
-        let mut twin = TickLoop::new(self.motor(q), *law, lag, stretch.gains, self.qpps).smooth();
-        twin.winding_s = winding_s;
-        if let Some(speed) = stretch.before {
-            twin.start_steady(speed);
-        }
-        twin
-    }
-
-    /// The motor of these parameters.
-    fn motor(&self, q: &Vector6<f64>) -> PlantModel {
-        PlantModel {
-            tau_s: self.plant.tau_s * (q[3] * UNITS[3]).clamp(-2.0, 2.0).exp(),
-            gain_counts_per_s: self.plant.gain_counts_per_s * (q[5] * UNITS[5]).clamp(-0.5, 0.5).exp(),
-            ..self.plant
-        }
-    }
-
     /// With the counts trusted more, where their times are known better than is taken for granted.
     fn sharper(&self, q: &Vector6<f64>) -> Option<Self> {
         let of_counts = self.counts_about(q);
@@ -464,17 +410,26 @@ impl<'a, L: Law> Known<'a, L> {
     fn residuals(&self, q: &Vector6<f64>) -> DVector<f64> {
         let [filter_s, delay_s, winding_s] = self.parts(q);
         let tick_s = self.law.tick_s();
-        let motor = self.motor(q);
-        let whole = Lag { filter_s, delay_ticks: (delay_s + winding_s) / tick_s };
+        let lag = Lag { filter_s, delay_ticks: delay_s / tick_s };
+        let model = PlantModel {
+            tau_s: self.plant.tau_s * (q[3] * UNITS[3]).clamp(-2.0, 2.0).exp(),
+            gain_counts_per_s: self.plant.gain_counts_per_s * (q[5] * UNITS[5]).clamp(-0.5, 0.5).exp(),
+            ..self.plant
+        };
         let offset_s = q[4] * UNITS[4];
         let mut all = Vec::with_capacity(self.readings + 12);
         for (stretch, noise) in self.stretches.iter().zip(&self.noises) {
-            let twin = self.twin(q, &self.law, stretch);
+            let mut twin = TickLoop::new(model, self.law, lag, stretch.gains, self.qpps).smooth();
+            twin.winding_s = winding_s;
+            if let Some(speed) = stretch.before {
+                twin.start_steady(speed);
+            }
             let from = all.len();
             misfits(&stretch.record, twin, &self.law, offset_s, stretch.before, *noise, &mut all);
             let [counts, _] = readings(&stretch.record);
             all.iter_mut().skip(from).take(counts).for_each(|rest| *rest /= self.of_counts);
-            let predicted = LoopPlant::new(DiscretePlant::of(&motor, tick_s), &self.law, whole)
+            let whole = Lag { delay_ticks: (delay_s + winding_s) / tick_s, ..lag };
+            let predicted = LoopPlant::new(DiscretePlant::of(&model, tick_s), &self.law, whole)
                 .margins(&stretch.gains, self.qpps)
                 .noise_duty;
             all.push(soft((noise / predicted.hypot(LAG_PRIORS.duty)).ln() / LAG_PRIORS.rounding));
@@ -673,10 +628,19 @@ pub(crate) fn predicted_record<L: Law>(
 }
 
 impl ClosedLoopRecord {
-    /// How many duties were read before it is judged.
-    fn starting_duties(&self) -> usize {
-        let from_s = self.judged_from_s();
-        self.duties.iter().filter(|duty| duty.0 < from_s).count()
+    /// How badly the duties of the start from rest fit a loop, whose duty is as noisy as in `steady`; `None` where none was read.
+    pub(crate) fn start_misfit<L: Law>(
+        &self,
+        twin: TickLoop<L>,
+        law: &L,
+        steady: &Self,
+    ) -> Option<StartMisfit> {
+        let until_s = self.setpoints.get(1).map_or(f64::INFINITY, |second| second.0 - 0.01);
+        let noise = noise(steady).hypot(LAG_PRIORS.duty);
+        let mut all = Vec::new();
+        duty_misfits(self, &Followed::new(self, twin, law, 0.0, None)?, |t| t < until_s, noise, &mut all);
+        let squares = all.iter().map(|rest| rest * rest).sum();
+        (!all.is_empty()).then_some(StartMisfit { squares, readings: all.len() })
     }
 
     /// The start from rest is the business of friction and of the current limit, not of the lag: a record is judged from here on.
@@ -789,10 +753,7 @@ mod tests {
 
     /// The same with counts of a given age, ticks, in each poll.
     fn record_with(lag: Lag, age_ticks: fn(usize) -> f64) -> Stretch {
-        record_of(PlainLaw::default(), lag, age_ticks)
-    }
-
-    fn record_of(law: PlainLaw, lag: Lag, age_ticks: fn(usize) -> f64) -> Stretch {
+        let law = PlainLaw::default();
         let mut twin = TickLoop::new(PLANT, law, lag, GAINS, 40_000.0);
         let mut record = ClosedLoopRecord::default();
         for n in 0..5 {
@@ -881,24 +842,6 @@ mod tests {
             )
             .expect("enough readings");
             assert!(found.least_filter_s.is_some_and(|found| least_s.contains(&found)), "{lag:?}: {found:?}");
-        }
-    }
-
-    #[test]
-    fn what_the_integral_does_at_full_duty_shows_in_the_start_from_rest() {
-        let asked = Asked { filter: false, law: true };
-        for windup in [Windup::Tracked, Windup::Held] {
-            let law = PlainLaw { windup, ..PlainLaw::default() };
-            let stretch = record_of(law, Lag { filter_s: 0.004, delay_ticks: 1.0 }, |_| 0.5);
-            let found = |gains: Gains| {
-                let stretch = Stretch { gains, ..stretch.clone() };
-                fit_lag(&[stretch], &PLANT, &PlainLaw::default(), 40_000.0, 0.03, asked)
-                    .expect("enough readings")
-                    .windup
-            };
-            assert_eq!(found(GAINS), windup);
-            // Neither does what was read.
-            assert_eq!(found(Gains { velocity: Pid { p: 0.3, ..GAINS.velocity }, ..GAINS }), Windup::Open);
         }
     }
 

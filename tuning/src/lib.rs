@@ -61,5 +61,6 @@ pub mod tune;
 mod verify;
 pub mod whatif;
 pub mod winding;
+mod windup;
 
 pub use step::{Point, StepFigures};

@@ -16,7 +16,7 @@ pub fn thresholds() -> Vec<Threshold> {
     use crate::{
         alternatives, closed_loop_monitor, current_silence, design, diagnosis, experiment, experiment_guard,
         fit, lag, law_probe, load_change, margin, model, motor_monitor, moves, open_loop_record, oscillation,
-        pace, promise, response, rules, settle, step, trajectory, tune, verify, winding,
+        pace, promise, response, rules, settle, step, trajectory, tune, verify, winding, windup,
     };
     listed![
         alternatives::Thresholds,
@@ -68,6 +68,7 @@ pub fn thresholds() -> Vec<Threshold> {
         tune::Thresholds,
         verify::Thresholds,
         winding::Thresholds,
+        windup::Thresholds,
     ]
 }
 

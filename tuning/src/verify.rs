@@ -6,7 +6,7 @@ use crate::design::{Design, Goal, Task, deadzone};
 use crate::experiment::rest;
 use crate::experiment_guard::{ExperimentGuard, Point};
 use crate::lag::{Asked, ClosedLoopRecord, LagFit, Stretch, fit_lag, predicted_record};
-use crate::law::Law;
+use crate::law::{Law, Windup};
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::margin::{MARGIN, headroom, may_be_short, scaled};
 use crate::model::{Gains, Pid};
@@ -18,6 +18,7 @@ use crate::request::{Excitation, Identification, Method, Request};
 use crate::score::{horizon_s, position_step};
 use crate::thresholds::thresholds;
 use crate::ticks::{TickLoop, velocity_test};
+use crate::windup::windup_of;
 
 thresholds! {
     /// The trial of the gains on the machine: its steps, what passes, and how gains are lowered.
@@ -105,7 +106,7 @@ pub fn measure_lag<L: Law>(
         Excitation::Window(width) => run_strokes(guard, task, gains, width)?,
     };
     let record = ClosedLoopRecord::of(guard, from_s, to_s);
-    let stretch = Stretch { record, gains: *gains, before: None };
+    let stretch = Stretch { record: record.clone(), gains: *gains, before: None };
     let Some(found) = fit_lag(&[stretch], &task.plant, &task.law, task.qpps, sd_ln_tau, asked) else {
         return Ok(None);
     };
@@ -116,7 +117,9 @@ pub fn measure_lag<L: Law>(
     let measured = plateau_activity(&ClosedLoopRecord::of(guard, settled, to_s));
     // Readings of the duty are whole steps of 1/32767, and a quiet loop tells nothing about its noise.
     let loudness = if noise > 0.004 { (measured / noise).clamp(0.9, 3.0) } else { 1.0 };
-    Ok(Some(LagFit { loudness, ..found }))
+    let windup =
+        if asked.law { windup_of(guard, task, gains, &found, (&record, excitation))? } else { Windup::Open };
+    Ok(Some(LagFit { loudness, windup, ..found }))
 }
 
 /// Whether an axis stays where it is while it is off, as far as that matters: one that its load moves would leave its travel between two strokes.

@@ -55,3 +55,18 @@ pub fn request(
         ..Request::default()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use brushwork_tuning::law::Windup;
+    use brushwork_tuning::model::Gains;
+
+    #[test]
+    fn what_a_run_finds_of_the_law_of_one_family_is_found_of_the_law_of_all() {
+        let law = AnyLaw::default();
+        assert_eq!(law.windup(), Windup::Open);
+        assert_eq!(law.with_windup(Windup::Held).map(|law| law.windup()), Some(Windup::Held));
+        assert!(law.with_other_sum(&Gains::default()).is_some());
+    }
+}

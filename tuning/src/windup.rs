@@ -1,0 +1,178 @@
+//! What the integral of a velocity loop does while its duty is cut.
+//!
+//! Two ways are common (Astrom and Hagglund, "PID Controllers: Theory, Design, and Tuning", 2nd edition, section 3.5): the integral follows what is left of the duty, or it stands still. A start from rest asks for more
+//! duty than there is, and the duty that is read back in the meantime, and as long as the integral takes to forget it, is another one under each.
+
+use crate::cause::Cause;
+use crate::design::Task;
+use crate::experiment::rest;
+use crate::experiment_guard::ExperimentGuard;
+use crate::lag::{ClosedLoopRecord, LagFit, StartMisfit};
+use crate::law::{Law, Windup};
+use crate::model::{Gains, PlantModel};
+use crate::request::Excitation;
+use crate::thresholds::thresholds;
+use crate::ticks::TickLoop;
+
+thresholds! {
+    /// How the two are told apart, and when a start is made for it.
+    WINDUP: Thresholds {
+        /// Highest misfit of the duties of a start, as a mean of squares over variances, at which a law is believed: on 515 starts of the bench, of another make and of a foreign
+        /// controller the better of both laws has 0.1 to 3 in the median of each, and up to 40 where something else was wrong.
+        most_misfit: f64 = 4.0,
+        /// How much worse the other law has to be, as a factor of the misfit. Of those starts 201 are told apart, 5 of them wrongly: tracking loops whose current limit lets the
+        /// current past it for a while. At 1.5 it is 8 of 229.
+        apart: f64 = 2.0,
+        /// How much worse it has to be at least: three standard deviations.
+        surely: f64 = 9.0,
+        /// Time constant of the motor up to which one more start is made where the first did not ask for more than full duty, in seconds: such a start takes little of the motor's
+        /// time, and it is the loops of quick motors that are careful.
+        quick_s: f64 = 0.06,
+        /// The duty that it asks for, as a multiple of full.
+        asked: f64 = 1.3,
+        /// The least that it has to ask for, in the same way.
+        least_asked: f64 = 1.1,
+        /// The highest speed that it goes to, as a share of full speed.
+        most_speed: f64 = 0.95,
+        /// How long it is watched, in seconds: the integral of a careful loop forgets within a tenth of a second or two.
+        watched_s: f64 = 0.2,
+    }
+}
+
+/// What it does, by the record of the lag's measurement, and by one more start where that tells nothing, the motor turns freely and is quick. The motor is braked at the end.
+pub(crate) fn windup_of<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
+    task: &Task<L>,
+    gains: &Gains,
+    found: &LagFit,
+    (record, excitation): (&ClosedLoopRecord, Excitation),
+) -> Result<Windup, Cause> {
+    let plant = PlantModel { tau_s: task.plant.tau_s * found.tau_scale, ..task.plant };
+    let task = &Task { plant, lag: found.lag, ..*task };
+    let told = told_by(task, gains, record, record);
+    if told != Windup::Open || excitation != Excitation::Free || plant.tau_s > WINDUP.quick_s {
+        return Ok(told);
+    }
+    let duty_per_speed = task.law.feed_forward() + gains.velocity.p;
+    let asked_before = record.setpoints.first().map_or(0.0, |first| duty_per_speed * first.1 / task.qpps);
+    let share = (WINDUP.asked / duty_per_speed).min(WINDUP.most_speed);
+    if asked_before > WINDUP.least_asked || duty_per_speed * share < WINDUP.least_asked {
+        return Ok(Windup::Open);
+    }
+    rest(guard, plant.tau_s, task.qpps)?;
+    let from_s = guard.now_s();
+    guard.poll(true)?;
+    guard.speed(share * task.qpps)?;
+    guard.poll_closely_for(WINDUP.watched_s)?;
+    let to_s = guard.now_s();
+    guard.duty(0.0)?;
+    Ok(told_by(task, gains, &ClosedLoopRecord::of(guard, from_s, to_s), record))
+}
+
+/// What a start tells, of a loop whose duty is as noisy as in `steady`.
+fn told_by<L: Law>(
+    task: &Task<L>,
+    gains: &Gains,
+    start: &ClosedLoopRecord,
+    steady: &ClosedLoopRecord,
+) -> Windup {
+    let misfit = |windup: Windup| -> Option<StartMisfit> {
+        let law = task.law.with_windup(windup)?;
+        let twin = TickLoop::new(task.plant, law, task.lag, *gains, task.qpps).smooth();
+        start.start_misfit(twin, &law, steady)
+    };
+    let (Some(tracked), Some(held)) = (misfit(Windup::Tracked), misfit(Windup::Held)) else {
+        return Windup::Open;
+    };
+    let (best, other, found) = if tracked.squares < held.squares {
+        (tracked, held, Windup::Tracked)
+    } else {
+        (held, tracked, Windup::Held)
+    };
+    let mean = best.squares / best.readings as f64;
+    let is_told = mean <= WINDUP.most_misfit
+        && other.squares > WINDUP.apart * best.squares
+        && other.squares - best.squares > WINDUP.surely * mean.max(1.0);
+    if is_told { found } else { Windup::Open }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::design::{Goal, USUAL_OVERSHOOT};
+    use crate::model::{Lag, Pid};
+    use crate::plain_law::PlainLaw;
+    use crate::setpoint::Setpoint;
+
+    const QPPS: f64 = 40_000.0;
+
+    fn gains(p: f64) -> Gains {
+        Gains { velocity: Pid { p, i: 20.0, d: 0.0 }, ..Gains::default() }
+    }
+
+    fn task(drive_limit: Option<f64>) -> Task<PlainLaw> {
+        let lag = Lag { filter_s: 0.004, delay_ticks: 1.0 };
+        let plant = PlantModel {
+            gain_counts_per_s: QPPS,
+            tau_s: 0.12,
+            coulomb_duty: 0.05,
+            load_duty: 0.0,
+            drive_limit,
+            brake_limit: drive_limit,
+            sag: 0.0,
+        };
+        Task {
+            plant,
+            law: PlainLaw::default(),
+            lag,
+            worst_lag: lag,
+            qpps: QPPS,
+            goal: Goal::of_level(50.0),
+            noise_factor: 1.0,
+            backlash_counts: 0.0,
+            least_integral_s: 0.0,
+            most_overshoot: USUAL_OVERSHOOT,
+            most_speed_gain: None,
+        }
+    }
+
+    /// A start to 45 % of full speed, polled every fourth tick.
+    fn start(task: &Task<PlainLaw>, gains: &Gains, windup: Windup) -> ClosedLoopRecord {
+        let law = PlainLaw { windup, ..task.law };
+        let mut twin = TickLoop::new(task.plant, law, task.lag, *gains, QPPS);
+        let speed = 0.45 * QPPS;
+        let mut record = ClosedLoopRecord { setpoints: vec![(0.01, speed)], ..ClosedLoopRecord::default() };
+        for tick in 0..240 {
+            let t = f64::from(tick) * law.tick_s();
+            let position = twin.motion.position;
+            if t >= 0.01 {
+                twin.tick(Setpoint::Speed(speed), 0.0);
+            }
+            if tick % 4 == 0 {
+                record.counts.push((t + 0.5 * law.tick_s(), position.floor()));
+                record.duties.push((t + 0.5 * law.tick_s(), twin.duty));
+            }
+        }
+        record
+    }
+
+    #[test]
+    fn what_the_integral_does_shows_where_a_start_asks_for_more_than_there_is() {
+        for drive_limit in [None, Some(0.6)] {
+            let task = task(drive_limit);
+            for windup in [Windup::Tracked, Windup::Held] {
+                let record = start(&task, &gains(3.0), windup);
+                assert_eq!(told_by(&task, &gains(3.0), &record, &record), windup, "{drive_limit:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_start_that_asks_for_less_and_one_that_neither_explains_tell_nothing() {
+        let task = task(None);
+        let record = start(&task, &gains(0.3), Windup::Held);
+        assert_eq!(told_by(&task, &gains(0.3), &record, &record), Windup::Open);
+        let other = start(&task, &gains(1.5), Windup::Held);
+        assert_eq!(told_by(&task, &gains(6.0), &other, &record), Windup::Open);
+    }
+}
