@@ -635,7 +635,7 @@ impl ClosedLoopRecord {
         law: &L,
         steady: &Self,
     ) -> Option<StartMisfit> {
-        let until_s = self.setpoints.get(1).map_or(f64::INFINITY, |second| second.0 - 0.01);
+        let until_s = if self.setpoints.len() > 1 { self.judged_from_s() } else { f64::INFINITY };
         let noise = noise(steady).hypot(LAG_PRIORS.duty);
         let mut all = Vec::new();
         duty_misfits(self, &Followed::new(self, twin, law, 0.0, None)?, |t| t < until_s, noise, &mut all);
@@ -662,21 +662,16 @@ fn misfits<L: Law>(
 ) {
     let Some(followed) = Followed::new(record, twin, law, offset_s, before) else { return };
     let from_s = record.judged_from_s();
-    count_misfits(record, &followed, |t| t >= from_s, all);
+    count_misfits(record, &followed, from_s, all);
     duty_misfits(record, &followed, |t| t > from_s, noise, all);
 }
 
-/// Those of the counts of some times.
-fn count_misfits(
-    record: &ClosedLoopRecord,
-    followed: &Followed,
-    is_judged: impl Fn(f64) -> bool,
-    all: &mut Vec<f64>,
-) {
+/// Those of the counts from a time on.
+fn count_misfits(record: &ClosedLoopRecord, followed: &Followed, from_s: f64, all: &mut Vec<f64>) {
     let age_s = if record.is_dated { 0.0 } else { followed.tick_s / 12.0_f64.sqrt() };
     let stamp_s = LAG_PRIORS.stamp_s.hypot(record.stamp_s).hypot(age_s);
     let mut drift: Option<(f64, f64, f64, f64)> = None;
-    for &(t, count) in record.counts.iter().filter(|count| is_judged(count.0)) {
+    for &(t, count) in record.counts.iter().filter(|count| count.0 >= from_s) {
         let position = followed.position_at(t);
         let error = count - position;
         drift = Some(match drift {

@@ -312,7 +312,6 @@ fn offset<L: Law>(task: &Task<L>, gains: &Gains, load_duty: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::design::{Goal, USUAL_OVERSHOOT};
     use crate::forecast::forecast;
     use crate::model::{Lag, Pid};
     use crate::plain_law::PlainLaw;
@@ -323,27 +322,16 @@ mod tests {
 
     /// A motor of gain QPPS under a loop at 300 Hz.
     fn task(tau_s: f64, lag: Lag) -> Task<PlainLaw> {
-        Task {
-            plant: PlantModel {
-                gain_counts_per_s: 30_000.0,
-                tau_s,
-                coulomb_duty: 0.05,
-                load_duty: 0.0,
-                drive_limit: None,
-                brake_limit: None,
-                sag: 0.0,
-            },
-            law: PlainLaw::default(),
-            lag,
-            worst_lag: lag,
-            qpps: 30_000.0,
-            goal: Goal::of_level(50.0),
-            noise_factor: 1.0,
-            backlash_counts: 0.0,
-            least_integral_s: 0.0,
-            most_overshoot: USUAL_OVERSHOOT,
-            most_speed_gain: None,
-        }
+        let plant = PlantModel {
+            gain_counts_per_s: 30_000.0,
+            tau_s,
+            coulomb_duty: 0.05,
+            load_duty: 0.0,
+            drive_limit: None,
+            brake_limit: None,
+            sag: 0.0,
+        };
+        Task::new(plant, PlainLaw::default(), lag, 30_000.0)
     }
 
     fn velocity(p: f64, i: f64) -> Gains {

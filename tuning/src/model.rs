@@ -80,6 +80,11 @@ pub struct DerivativeFilter {
     pub least_s: f64,
 }
 
+impl DerivativeFilter {
+    /// Nothing told whether it sees a filtered speed: what the loop loses may all be a delay.
+    pub const UNKNOWN: Self = Self { likely_s: 0.0, least_s: 0.0 };
+}
+
 /// State of a [`PlantModel`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion {

@@ -126,7 +126,7 @@ fn settling(likely: &Forecast, others: &[[Forecast; 2]], tick_s: f64) -> (f64, f
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::design::{Goal, USUAL_OVERSHOOT, design_pd, design_velocity};
+    use crate::design::{design_pd, design_velocity};
     use crate::law::Windup;
     use crate::plain_law::PlainLaw;
 
@@ -145,19 +145,7 @@ mod tests {
         let law = PlainLaw::default();
         let total_s = lag.total_s(law.tick_s());
         let interval_s = (total_s * (1.0 - 10.0 * sd), worst.total_s(law.tick_s()));
-        let task = Task {
-            plant,
-            law,
-            lag,
-            worst_lag: worst,
-            qpps: 28_000.0,
-            goal: Goal::of_level(50.0),
-            noise_factor: 1.0,
-            backlash_counts: 0.0,
-            least_integral_s: 0.0,
-            most_overshoot: USUAL_OVERSHOOT,
-            most_speed_gain: None,
-        };
+        let task = Task { worst_lag: worst, ..Task::new(plant, law, lag, 28_000.0) };
         let fit = Fit {
             model: plant,
             offset_s: 0.0,

@@ -4,7 +4,7 @@ use crate::alternatives::{proposed, seen};
 use crate::axis::EncoderClass;
 use crate::backlash::with_backlash;
 use crate::cause::Cause;
-use crate::design::{Goal, Task, USUAL_OVERSHOOT, design_velocity};
+use crate::design::{Goal, Task, design_velocity};
 use crate::experiment::{
     Probe, WINDOW, go_to, rest, run_free, run_own_position_test, run_own_test, run_position_relay, run_probe,
     run_relay, run_step, run_window,
@@ -268,21 +268,14 @@ fn design<L: LawProbe>(
 ) -> Result<(), Cause> {
     let request = &with_law(guard, request, probe, found, report)?;
     let task = Task {
-        plant: found.fit.model,
-        law: request.law,
-        lag: guard.facts.usual_lag,
         worst_lag: if request.excitation == Excitation::Free {
             guard.facts.usual_lag
         } else {
             guard.facts.longest_lag
         },
-        qpps: found.qpps,
         goal: Goal::of_level(request.level),
         noise_factor: (probe.noise_counts / TUNE.rounded_counts).max(1.0),
-        backlash_counts: 0.0,
-        least_integral_s: 0.0,
-        most_overshoot: USUAL_OVERSHOOT,
-        most_speed_gain: None,
+        ..Task::new(found.fit.model, request.law, guard.facts.usual_lag, found.qpps)
     };
     guard.progress("Measuring the lag of the loop");
     let task = settle_lag(guard, request, task, report)?;
@@ -566,7 +559,7 @@ fn with_known_filter<L: Law>(request: &Request<L>, report: &Report<L>, task: Tas
     if let Some(seen) = task.law.derivative_filter().filter(|_| has_derivative) {
         // Longer than all that the loop loses it is none: polls in step with the counts make a duty smooth.
         let is_longer = report.lag.is_some_and(|lag| seen.least_s > lag.interval_s.1);
-        let seen = if is_longer { DerivativeFilter { likely_s: 0.0, least_s: 0.0 } } else { seen };
+        let seen = if is_longer { DerivativeFilter::UNKNOWN } else { seen };
         // A lag that was not measured is no shorter than the filter that was.
         let least_s = if report.lag.is_some() { 0.0 } else { seen.likely_s };
         let split = |lag: Lag, filter_s: f64| {

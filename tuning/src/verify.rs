@@ -631,7 +631,6 @@ fn judge_move(points: &[Point], target: f64, moved: f64, late_s: f64, step: f64)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::design::USUAL_OVERSHOOT;
     use crate::model::{Lag, PlantModel};
     use crate::plain_law::PlainLaw;
     use crate::score::Score;
@@ -659,19 +658,7 @@ mod tests {
             brake_limit: None,
             sag: 0.0,
         };
-        let task = Task {
-            plant,
-            law: PlainLaw::default(),
-            lag: Lag::default(),
-            worst_lag: Lag::default(),
-            qpps: 20_000.0,
-            goal: Goal::of_level(50.0),
-            noise_factor: 1.0,
-            backlash_counts: 0.0,
-            least_integral_s: 0.0,
-            most_overshoot: USUAL_OVERSHOOT,
-            most_speed_gain: None,
-        };
+        let task = Task::new(plant, PlainLaw::default(), Lag::default(), 20_000.0);
         softer(&Request::default(), &task, &DESIGN, &measured).gains.velocity
     }
 

@@ -104,7 +104,6 @@ fn told_by<L: Law>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::design::{Goal, USUAL_OVERSHOOT};
     use crate::model::{Lag, Pid};
     use crate::plain_law::PlainLaw;
     use crate::setpoint::Setpoint;
@@ -126,19 +125,7 @@ mod tests {
             brake_limit: drive_limit,
             sag: 0.0,
         };
-        Task {
-            plant,
-            law: PlainLaw::default(),
-            lag,
-            worst_lag: lag,
-            qpps: QPPS,
-            goal: Goal::of_level(50.0),
-            noise_factor: 1.0,
-            backlash_counts: 0.0,
-            least_integral_s: 0.0,
-            most_overshoot: USUAL_OVERSHOOT,
-            most_speed_gain: None,
-        }
+        Task::new(plant, PlainLaw::default(), lag, QPPS)
     }
 
     /// A start to 45 % of full speed, polled every fourth tick.

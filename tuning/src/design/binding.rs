@@ -76,7 +76,7 @@ fn raised(gains: &Gains) -> Gains {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::design::{Goal, USUAL_OVERSHOOT, design_velocity};
+    use crate::design::{Goal, design_velocity};
     use crate::model::{Lag, Pid, PlantModel};
     use crate::plain_law::PlainLaw;
 
@@ -91,19 +91,7 @@ mod tests {
             brake_limit: None,
             sag: 0.0,
         };
-        Task {
-            plant,
-            law: PlainLaw::default(),
-            lag,
-            worst_lag: lag,
-            qpps: gain_counts_per_s,
-            goal: Goal::of_level(level),
-            noise_factor: 1.0,
-            backlash_counts: 0.0,
-            least_integral_s: 0.0,
-            most_overshoot: USUAL_OVERSHOOT,
-            most_speed_gain: None,
-        }
+        Task { goal: Goal::of_level(level), ..Task::new(plant, PlainLaw::default(), lag, gain_counts_per_s) }
     }
 
     #[test]

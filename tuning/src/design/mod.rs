@@ -25,27 +25,16 @@ mod tests {
 
     fn task(level: f64) -> Task<PlainLaw> {
         let lag = Lag { filter_s: 0.004, delay_ticks: 1.0 };
-        Task {
-            plant: PlantModel {
-                gain_counts_per_s: 30_000.0,
-                tau_s: 0.1,
-                coulomb_duty: 0.05,
-                load_duty: 0.0,
-                drive_limit: None,
-                brake_limit: None,
-                sag: 0.03,
-            },
-            law: PlainLaw::default(),
-            lag,
-            worst_lag: lag,
-            qpps: 28_000.0,
-            goal: Goal::of_level(level),
-            noise_factor: 1.0,
-            backlash_counts: 0.0,
-            least_integral_s: 0.0,
-            most_overshoot: USUAL_OVERSHOOT,
-            most_speed_gain: None,
-        }
+        let plant = PlantModel {
+            gain_counts_per_s: 30_000.0,
+            tau_s: 0.1,
+            coulomb_duty: 0.05,
+            load_duty: 0.0,
+            drive_limit: None,
+            brake_limit: None,
+            sag: 0.03,
+        };
+        Task { goal: Goal::of_level(level), ..Task::new(plant, PlainLaw::default(), lag, 28_000.0) }
     }
 
     #[test]

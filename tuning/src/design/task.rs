@@ -77,6 +77,26 @@ pub struct Task<L: Law> {
     pub most_speed_gain: Option<f64>,
 }
 
+impl<L: Law> Task<L> {
+    /// That of a motor without backlash and of a lag that is known, at the usual level.
+    #[must_use]
+    pub fn new(plant: PlantModel, law: L, lag: Lag, qpps: f64) -> Self {
+        Self {
+            plant,
+            law,
+            lag,
+            worst_lag: lag,
+            qpps,
+            goal: Goal::of_level(50.0),
+            noise_factor: 1.0,
+            backlash_counts: 0.0,
+            least_integral_s: 0.0,
+            most_overshoot: USUAL_OVERSHOOT,
+            most_speed_gain: None,
+        }
+    }
+}
+
 /// The overshoot of a speed step that a well-known motor may be designed for.
 pub const USUAL_OVERSHOOT: f64 = 0.20;
 

@@ -100,7 +100,6 @@ fn pi(p: f64, time_s: f64) -> Gains {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::design::{Goal, USUAL_OVERSHOOT};
     use crate::law::Windup;
     use crate::model::Lag;
     use crate::plain_law::PlainLaw;
@@ -122,19 +121,8 @@ mod tests {
         };
         let lag = Lag { filter_s: 0.0, delay_ticks: 1.3 };
         let over = |windup: Windup| {
-            let task = Task {
-                plant,
-                law: PlainLaw { windup, ..PlainLaw::default() },
-                lag,
-                worst_lag: lag,
-                qpps: 0.95 * gain_counts_per_s,
-                goal: Goal::of_level(50.0),
-                noise_factor: 1.0,
-                backlash_counts: 0.0,
-                least_integral_s: 0.0,
-                most_overshoot: USUAL_OVERSHOOT,
-                most_speed_gain: None,
-            };
+            let task =
+                Task::new(plant, PlainLaw { windup, ..PlainLaw::default() }, lag, 0.95 * gain_counts_per_s);
             let design = design_velocity(&task).expect("gains");
             let held = PlainLaw { windup: Windup::Held, ..task.law };
             velocity_test(&plant, &held, lag, &design.gains, task.qpps).overshoot

@@ -8,7 +8,7 @@ pub(crate) mod experiment;
 pub(crate) mod fit;
 
 use crate::cause::Cause;
-use crate::design::{Goal, Task, USUAL_OVERSHOOT, design_pd};
+use crate::design::{Goal, Task, design_pd};
 use crate::experiment_guard::ExperimentGuard;
 use crate::law::Law;
 use crate::linear::{DiscretePlant, LoopPlant};
@@ -275,19 +275,9 @@ fn task_of<L: Law>(request: &Request<L>, found: &Found) -> Task<L> {
     if found.fit.chi_square > MOVES.odd_chi_square {
         goal.ms = 1.0 + MOVES.odd_share * (goal.ms - 1.0);
     }
-    Task {
-        plant: model,
-        law,
-        lag,
-        worst_lag: Lag { filter_s: 0.0, delay_ticks: worst_s / law.tick_s() },
-        qpps: model.gain_counts_per_s * (1.0 - model.coulomb_duty),
-        goal,
-        noise_factor: 1.0,
-        backlash_counts: 0.0,
-        least_integral_s: 0.0,
-        most_overshoot: USUAL_OVERSHOOT,
-        most_speed_gain: None,
-    }
+    let qpps = model.gain_counts_per_s * (1.0 - model.coulomb_duty);
+    let worst_lag = Lag { filter_s: 0.0, delay_ticks: worst_s / law.tick_s() };
+    Task { worst_lag, goal, ..Task::new(model, law, lag, qpps) }
 }
 
 /// A design whose registers keep their margin at every rate that is as likely.

@@ -129,7 +129,8 @@ pub(crate) fn derivative_under<L: Law>(
                 told = Told::of_both(told, other.and_then(|turned| turned.told(rate_hz)));
             }
             let is_open = told.is_none_or(|told| told.filter.is_none() && told.roughness < WHOLE);
-            let filter = if is_open { Some(UNKNOWN) } else { told.and_then(|told| told.filter) };
+            let filter =
+                if is_open { Some(DerivativeFilter::UNKNOWN) } else { told.and_then(|told| told.filter) };
             let roughness = told.map(|told| told.roughness);
             return Ok(Some(DerivativeFound { seconds: found, roughness, filter }));
         }
@@ -208,9 +209,6 @@ fn scatter(readings: &[Point], missing: impl Fn(&Point) -> Option<f64>, taken: f
         .filter(|more| more.1.len() >= ENOUGH_FOR_ROUGHNESS)
         .fold(first, |least, more| if more.0 < least.0 { more } else { least })
 }
-
-/// A D of which nothing told whether it sees a filtered speed: what the loop loses may all be a delay.
-const UNKNOWN: DerivativeFilter = DerivativeFilter { likely_s: 0.0, least_s: 0.0 };
 
 /// What creeps have told of the speed that D sees.
 #[derive(Clone, Copy, Debug)]
