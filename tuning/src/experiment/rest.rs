@@ -4,8 +4,9 @@ use crate::cause::Cause;
 use crate::experiment_guard::ExperimentGuard;
 use crate::law::Law;
 
-/// Waits until the motor stands.
+/// Waits until the motor, which is off, stands. What was computed since the last answer is nobody's lateness.
 pub(crate) fn rest<L: Law>(guard: &mut ExperimentGuard<'_, L>, tau_s: f64, qpps: f64) -> Result<(), Cause> {
+    guard.pause();
     let until = guard.now_s() + 0.1 + 6.0 * tau_s;
     while guard.now_s() < until {
         guard.poll(false)?;

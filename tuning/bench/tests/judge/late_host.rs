@@ -1,9 +1,11 @@
 //! A host that stands still for 0.1 to 0.9 s in mid-run, or reads nearly every reply late: whatever it sees then is no fault of the machine, and no refusal says so.
 
-use brushwork_mcp_axis::McpLaw;
+use brushwork_mcp_axis::{Carrier, McpLaw, PacketAxis, Timed};
 use brushwork_mcp_sim::controller::Controller;
+use brushwork_mcp_sim::motion::ControlLaw;
+use brushwork_mcp_wire::packet_serial::{Generation, Given, Typed, commands};
 use brushwork_plant::world::WorldAction;
-use brushwork_tuning::axis::Axis as _;
+use brushwork_tuning::axis::{Axis as _, AxisError, EncoderClass};
 use brushwork_tuning::cause::{Cause, Whose};
 use brushwork_tuning::law::Law;
 use brushwork_tuning::report::{Report, Verdict};
@@ -326,4 +328,61 @@ fn a_fault_that_a_timely_second_try_shows_again_is_named() {
     }
     println!("{named} of {runs} named");
     assert!(5 * named >= 4 * runs, "{named} of {runs}");
+}
+
+/// A line to a controller, of a run that computes for so long each time that it has stopped a motor which followed a speed: a fit of many records on a small computer.
+struct Computing {
+    line: SimulatedLine<Controller>,
+    computes: Duration,
+    has_speed: bool,
+    has_stopped: bool,
+}
+
+impl Carrier for Computing {
+    fn transact<const L: u8>(&mut self, command: Typed<L>, given: &[Given<L>]) -> Timed<L> {
+        let is_stop = command.number() == commands::DUTY_ACCEL_M1.number();
+        self.has_stopped = is_stop && std::mem::take(&mut self.has_speed);
+        self.has_speed |= command.number() == commands::SPEED_M1.number();
+        self.line.transact(command, given)
+    }
+
+    fn now(&mut self) -> Duration {
+        if std::mem::take(&mut self.has_stopped) {
+            self.line.idle(self.computes);
+        }
+        self.line.now()
+    }
+
+    fn wait_until(&mut self, time: Duration) -> Result<(), AxisError> {
+        self.line.wait_until(time)
+    }
+
+    fn generation(&self) -> Generation {
+        self.line.generation()
+    }
+
+    fn stream(&self) -> Option<usize> {
+        self.line.stream()
+    }
+
+    fn is_simulated(&self) -> bool {
+        self.line.is_simulated()
+    }
+}
+
+#[test]
+fn what_a_run_computes_while_the_motor_is_off_is_not_called_late() {
+    for number in 0..PLANTS {
+        let plant = specimen(31, number);
+        let line = <ControlLaw as Unit>::axis(&plant).carrier;
+        let carrier =
+            Computing { line, computes: Duration::from_millis(300), has_speed: false, has_stopped: false };
+        let mut axis = PacketAxis::new(carrier, Motor::M1, EncoderClass::Quadrature);
+        let report = tune(&mut axis, &request_of(&plant, Method::Velocity));
+        let late = report
+            .causes
+            .iter()
+            .find(|cause| matches!(cause, Cause::AnsweredLate { .. } | Cause::TakenLate { .. }));
+        assert_eq!(late, None, "plant {number}");
+    }
 }
