@@ -374,7 +374,7 @@ fn identification_of<'a, L: Law>(
         Some(error_percent(report.fit?.model.gain_counts_per_s, truth.gain_counts_per_s))
     };
     let tau = |truth: &Truth<L>, report: &report::Report<L>| {
-        let error = error_percent(report.fit?.model.tau_s, truth.tau_s);
+        let error = error_percent(report.fit?.time_constant().seconds, truth.tau_s);
         (truth.tau_s > 0.03).then_some(error)
     };
     let lag = |truth: &Truth<L>, report: &report::Report<L>| {
@@ -416,12 +416,12 @@ fn identification_of<'a, L: Law>(
         gain_width: round(width(&|report| Some(400.0 * report.fit?.sd_ln_gain)), 2),
         tau_inside: round(
             inside(&|truth, report| {
-                let fit = report.fit?;
-                Some((fit.model.tau_s / truth.tau_s).ln().abs() <= 2.0 * fit.sd_ln_tau)
+                let found = report.fit?.time_constant();
+                Some((found.seconds / truth.tau_s).ln().abs() <= 2.0 * found.sd_ln)
             }),
             1,
         ),
-        tau_width: round(width(&|report| Some(400.0 * report.fit?.sd_ln_tau)), 2),
+        tau_width: round(width(&|report| Some(400.0 * report.fit?.time_constant().sd_ln)), 2),
         lag_inside: round(
             inside(&|truth, report| {
                 let (low, high) = report.lag?.interval_s;

@@ -72,7 +72,8 @@ pub fn print(report: &Report, out: &mut Output) -> Result<(), OutputError> {
     if let Some(fit) = &report.fit {
         let share = |sd: f64| format!("+- {:.1} %", 200.0 * sd);
         row("gain", format!("{:.0} counts/s", fit.model.gain_counts_per_s), share(fit.sd_ln_gain));
-        row("time constant", format!("{:.1} ms", 1e3 * fit.model.tau_s), share(fit.sd_ln_tau));
+        let tau = fit.time_constant();
+        row("time constant", format!("{:.1} ms", 1e3 * tau.seconds), share(tau.sd_ln));
         let friction = format!("{:.1} % duty", 100.0 * fit.model.coulomb_duty);
         row("friction", friction, format!("+- {:.1} % duty", 200.0 * fit.sd_coulomb));
     }

@@ -99,7 +99,8 @@ fn motor(page: &mut String, report: &Report) {
     if let Some(fit) = &report.fit {
         let share = |sd: f64| format!("± {:.1} %", 200.0 * sd);
         row("Speed per duty", format!("{:.0} counts/s", fit.model.gain_counts_per_s), share(fit.sd_ln_gain));
-        row("Time constant", format!("{:.1} ms", 1e3 * fit.model.tau_s), share(fit.sd_ln_tau));
+        let tau = fit.time_constant();
+        row("Time constant", format!("{:.1} ms", 1e3 * tau.seconds), share(tau.sd_ln));
         let friction = format!("{:.1} % duty", 100.0 * fit.model.coulomb_duty);
         row("Friction", friction, format!("± {:.1} % duty", 200.0 * fit.sd_coulomb));
     }

@@ -130,11 +130,12 @@ fn feed_forward_text(run: Option<&Run>) -> Option<String> {
 /// What was found of the motor, in one line.
 fn model_text(report: &Report) -> Option<String> {
     let fit = report.fit?;
+    let tau = fit.time_constant();
     let mut text = RunMessage::Model {
         qpps: report.qpps?,
         gain_interval_percent: 100.0 * report.free.map_or(2.0 * fit.sd_ln_gain, |free| free.interval),
-        time_constant_ms: 1e3 * fit.model.tau_s,
-        time_interval_percent: 200.0 * fit.sd_ln_tau,
+        time_constant_ms: 1e3 * tau.seconds,
+        time_interval_percent: 200.0 * tau.sd_ln,
         friction_percent: 100.0 * fit.model.coulomb_duty,
         friction_interval_percent: 200.0 * fit.sd_coulomb,
     }

@@ -81,7 +81,7 @@ fn boards_are_tuned_by_moves_alone_and_keep_the_goals_of_gains() {
             Some(100.0 * (found / under_test.truth.gain_counts_per_s - 1.0).abs())
         });
         let tau = error(|under_test, report| {
-            let found = report.fit?.model.tau_s;
+            let found = report.fit?.time_constant().seconds;
             Some(100.0 * (found / under_test.truth.tau_s - 1.0).abs())
         });
         // Ratios from rate to rate are 1.41: the very one, or the next.

@@ -222,7 +222,8 @@ fn intervals_of_another_make_hold_the_truth_and_are_not_absurdly_wide() {
         let (Some(fit), Some(lag)) = (run.report.fit, run.report.lag) else { continue };
         let about = |middle: f64, sd: f64| (middle.ln() - 2.0 * sd, middle.ln() + 2.0 * sd);
         all[0].see(about(fit.model.gain_counts_per_s, fit.sd_ln_gain), motor.gain().ln());
-        all[1].see(about(fit.model.tau_s, fit.sd_ln_tau), motor.tau_s().ln());
+        let tau = fit.time_constant();
+        all[1].see(about(tau.seconds, tau.sd_ln), motor.tau_s().ln());
         let lag_ms = 1e3 * (law.lag_s() + motor.henries / motor.ohms);
         all[2].see((1e3 * lag.interval_s.0, 1e3 * lag.interval_s.1), lag_ms);
     }
