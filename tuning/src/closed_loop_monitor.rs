@@ -31,6 +31,9 @@ thresholds! {
         load_doubt: f64 = 0.25,
         /// Lowest and highest friction, as multiples of that of the model.
         friction: (f64, f64) = (0.5, 1.5),
+        /// Least friction that the highest one is taken from, as a share of the duty at which the probe saw the motor start: where friction falls with the speed, a model of
+        /// one friction for all speeds may have none. Of 720 loops on the position of another make four stood still below that duty and were called jammed.
+        of_start: f64 = 0.5,
         /// Duty on top of the highest friction, as a share of full.
         more_friction: f64 = 0.02,
         /// Most that holds a motor at rest, as a multiple of the model's friction.
@@ -60,6 +63,9 @@ thresholds! {
         /// How far a stretch may be outside its bounds: counts, seconds that the stamps of its ends and of the speed before it may be off, and shares of the speed before
         /// it and of the speed at full duty.
         margin: Margin = Margin { counts: 4.0, stamp_s: 0.0025, speed: 0.06, full: 0.012 },
+        /// Longest tick for which that time of the stamps is enough, in seconds: counts are up to a tick old when they are read. A longer tick makes it longer. At 200 Hz, of
+        /// 360 drums of another make three were called jammed for it.
+        stamp_tick_s: f64 = 1.0 / 300.0,
         /// The same where the counts stand still: no roughness and no late stamp makes them stand.
         standing_margin: Margin = Margin { counts: 4.0, stamp_s: 0.0, speed: 0.1, full: 0.005 },
     }
@@ -87,9 +93,10 @@ impl Scaled for Margin {
 
 impl Margin {
     /// In counts, for a stretch at a speed.
-    fn of(&self, stretch: &Stretch, full_speed: f64) -> f64 {
+    fn of(&self, stretch: &Stretch, full_speed: f64, tick_s: f64) -> f64 {
         let span = stretch.to.t - stretch.from.t;
-        let of_speed = self.stamp_s * (1.0 + span / stretch.base_s) + self.speed * span;
+        let stamp_s = self.stamp_s * (tick_s / CLOSED_LOOP.stamp_tick_s).max(1.0);
+        let of_speed = stamp_s * (1.0 + span / stretch.base_s) + self.speed * span;
         self.counts + of_speed * stretch.speed_before.abs() + self.full * span * full_speed
     }
 }
@@ -102,6 +109,8 @@ pub(crate) struct ClosedLoopMonitor {
     start_duty: f64,
     /// Duty that one count more in a tick makes.
     step_duty: f64,
+    /// Time between two ticks of the loop, s.
+    tick_s: f64,
     /// From when on its duty is known, nought or that of the loop, and when it was first commanded anything, s.
     since_s: f64,
     commanded_s: f64,
@@ -137,6 +146,7 @@ impl ClosedLoopMonitor {
             model,
             start_duty,
             step_duty: 0.0,
+            tick_s: 0.0,
             since_s: f64::INFINITY,
             commanded_s: f64::INFINITY,
             setpoints: VecDeque::new(),
@@ -145,7 +155,8 @@ impl ClosedLoopMonitor {
 
     /// The loop is given the motor, or a new setpoint, at some time between two: a lost reply leaves open which try was heard.
     /// `before` is how it had the motor until then.
-    pub(crate) fn command(&mut self, from_s: f64, to_s: f64, before: Before) {
+    pub(crate) fn command(&mut self, (from_s, to_s): (f64, f64), tick_s: f64, before: Before) {
+        self.tick_s = tick_s;
         if before != Before::ClosedLoop {
             self.since_s = if let Before::Off(since_s) = before { since_s } else { to_s };
             self.commanded_s = from_s - CLOSED_LOOP.setpoint_acts_s.0;
@@ -212,8 +223,11 @@ impl ClosedLoopMonitor {
     fn within(&self, stretch: &Stretch, duties: &Duties<'_>) -> bool {
         let moved = stretch.to.counts - stretch.from.counts;
         let full = self.model.gain_counts_per_s;
-        let margin =
-            if stretch.stands { CLOSED_LOOP.standing_margin } else { CLOSED_LOOP.margin }.of(stretch, full);
+        let margin = if stretch.stands { CLOSED_LOOP.standing_margin } else { CLOSED_LOOP.margin }.of(
+            stretch,
+            full,
+            self.tick_s,
+        );
         let least = self.least_distance(stretch, duties, 1.0);
         let most = -self.least_distance(stretch, duties, -1.0);
         moved >= least - margin && moved <= most + margin
@@ -271,11 +285,10 @@ impl ClosedLoopMonitor {
             let brake = model.brake_limit.unwrap_or(limit).max(limit);
             push = push.clamp(-CLOSED_LOOP.limit.1 * brake, CLOSED_LOOP.limit.0 * limit);
         }
-        let friction = CLOSED_LOOP.friction.1 * model.coulomb_duty + CLOSED_LOOP.more_friction;
-        let stiction = self
-            .start_duty
-            .min(CLOSED_LOOP.stiction * model.coulomb_duty + CLOSED_LOOP.more_stiction)
-            .max(friction);
+        let coulomb = model.coulomb_duty.max(CLOSED_LOOP.of_start * self.start_duty);
+        let friction = CLOSED_LOOP.friction.1 * coulomb + CLOSED_LOOP.more_friction;
+        let stiction =
+            self.start_duty.min(CLOSED_LOOP.stiction * coulomb + CLOSED_LOOP.more_stiction).max(friction);
         let force = if speed > 0.0 {
             push - friction
         } else if speed < 0.0 {

@@ -335,6 +335,7 @@ mod tests {
 
     /// When the alarm is, s.
     const ALARM_S: f64 = 10.0;
+    const TICK_S: f64 = 1.0 / 300.0;
 
     /// A poll `t` s from the alarm on.
     fn poll(t: f64, counts: f64, duty: Option<f64>, amps: Option<f64>) -> Point {
@@ -372,13 +373,13 @@ mod tests {
             sag: 0.0,
         });
         monitor.drive(ALARM_S - 5.0, 0.0);
-        monitor.release(ALARM_S - 1.0, ALARM_S - 1.0);
+        monitor.release((ALARM_S - 1.0, ALARM_S - 1.0), TICK_S);
         assert_eq!(monitor.see(&poll(-0.7, 0.0, Some(0.32), Some(1.0))), Ok(()));
         monitor.drive(ALARM_S - 0.6, 0.0);
         for n in 0..10 {
             assert_eq!(monitor.see(&poll(-0.5 + 0.04 * f64::from(n), 0.0, None, Some(0.0))), Ok(()));
         }
-        monitor.release(ALARM_S - 0.1, ALARM_S - 0.1);
+        monitor.release((ALARM_S - 0.1, ALARM_S - 0.1), TICK_S);
         let held = [poll(-0.07, 0.0, Some(-0.58), None), poll(-0.036, 0.0, Some(-0.83), Some(8.35))];
         let off = [0.019, 0.058, 0.094].map(|t| poll(t, 0.0, None, Some(0.0)));
         assert_eq!(named(monitor.clone(), &[&held[..], &off].concat()), Cause::Stalled);

@@ -143,7 +143,8 @@ impl MotorMonitor {
             self.duties.push_back((t - 2.0 / self.slew_per_s(), last));
             self.in_loop = false;
             self.loop_until_s = t;
-            self.changed_s = t;
+            // A derivative of a few counts gives pulses, so that it may have had another one than was read last, until the longest ramp is over.
+            self.changed_s = t + if self.is_abrupt { 0.0 } else { self.slew_per_s().recip() };
         }
         let before = self.duties.back().map_or(0.0, |given| given.1);
         self.rising = before * duty <= 0.0 || duty.abs() >= before.abs();
@@ -216,8 +217,8 @@ impl MotorMonitor {
         if pull <= 0.0 || free <= 0.0 { held } else { held + free - pull * (free / pull).ln_1p() }
     }
 
-    /// A loop has the motor: its duty is what is read. It was commanded so first at `first_s`, and answered the try of `t`.
-    pub fn release(&mut self, first_s: f64, t: f64) {
+    /// A loop of a tick has the motor: its duty is what is read. It was commanded so first at `first_s`, and answered the try of `t`.
+    pub fn release(&mut self, (first_s, t): (f64, f64), tick_s: f64) {
         let ramp_s = 2.0 / self.slew_per_s();
         if !self.in_loop {
             // What a loop read before says nothing about the time since it lost the motor.
@@ -229,7 +230,7 @@ impl MotorMonitor {
                 Some((off_s, 0.0)) => Before::Off(off_s + ramp_s),
                 _ => Before::Driven,
             };
-            closed_loop.command(first_s, t, before);
+            closed_loop.command((first_s, t), tick_s, before);
         }
         self.in_loop = true;
         self.changed_s = t;
@@ -699,7 +700,7 @@ mod tests {
     /// A motor at 1,020 counts/s of 3,800 is braked and stands; then its load takes it along at so many counts/s.
     fn seen_taken_along(counts_per_s: f64) -> Result<(), Cause> {
         let mut monitor = knowing(0.04, 3_900.0);
-        monitor.release(0.0, 0.0);
+        monitor.release((0.0, 0.0), 1.0 / 300.0);
         let mut counts = 0.0;
         let braked = [560.0, 310.0, 170.0, 90.0, 0.0, 0.0, 0.0, 0.0];
         (0..32_usize).try_for_each(|n| {

@@ -47,7 +47,7 @@ impl<L: Law> ExperimentGuard<'_, L> {
         self.pace.answered(&exchange);
         let t = exchange.middle_s() - self.epoch_s;
         self.drives.push(Drive { t, input: Input::Speed(f64::from(whole)) });
-        self.monitor.release(first_s, t);
+        self.monitor.release((first_s, t), self.law.tick_s());
         Ok(())
     }
 
@@ -74,7 +74,7 @@ impl<L: Law> ExperimentGuard<'_, L> {
         self.pace.answered(&exchange);
         let t = exchange.middle_s() - self.epoch_s;
         self.drives.push(Drive { t, input: Input::Position(counts.round(), f64::from(speed)) });
-        self.monitor.release(first_s, t);
+        self.monitor.release((first_s, t), self.law.tick_s());
         Ok(())
     }
 
@@ -101,7 +101,7 @@ impl<L: Law> ExperimentGuard<'_, L> {
         self.pace.answered(&exchange);
         let t = exchange.middle_s() - self.epoch_s;
         self.drives.push(Drive { t, input: about });
-        self.monitor.release(first_s, t);
+        self.monitor.release((first_s, t), self.law.tick_s());
         // Between two polls its relay may have given either duty.
         self.monitor.hold(4.0 * height);
         Ok(Some(f64::from(taken)))

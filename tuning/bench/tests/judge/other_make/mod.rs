@@ -289,6 +289,27 @@ fn position_loops_of_another_make_keep_the_margin_that_they_promise() {
     assert!(20 * silent <= tuned, "of seed {seed}: {silent} of {tuned}");
 }
 
+/// Each of these was called jammed: friction that falls with the speed holds a motor below a duty at which a model of one friction says that it turns, counts that a loop of 200 Hz
+/// samples are up to 5 ms old, and a loop that pulsed its derivative leaves the motor with a duty that no poll saw.
+#[test]
+fn a_motor_that_nothing_stops_is_not_called_jammed() {
+    let known = [
+        (1_009, 105, Method::Pd),
+        (1_004, 63, Method::Pd),
+        (1_009, 12, Method::Piv),
+        (1_009, 108, Method::Piv),
+        (1_003, 47, Method::Piv),
+        (1_002, 29, Method::Piv),
+        (1_005, 83, Method::Pid),
+        (1_005, 34, Method::Pd),
+    ];
+    for (seed, number, method) in known {
+        let run = Run::with(seed, number, method, |_| {});
+        println!("{}", run.line);
+        assert_ne!(run.report.verdict, Verdict::Refused, "{}", run.line);
+    }
+}
+
 /// Taken to be the other one, the lag of these was off by 1.2 to 2.4 ms, outside its interval.
 #[test]
 fn whether_the_sum_is_taken_before_the_error_is_added_is_found_out() {
