@@ -96,7 +96,7 @@ thresholds! {
         /// Counts in a tick from which on a speed is laid between two whole numbers of them.
         least_per_tick: f64 = 6.0,
         /// Predicted noise of the duty, as a share of full, above which nothing can be heard beside it.
-        loudest: f64 = 0.15,
+        loudest: f64 = 0.40,
     }
 }
 
@@ -105,7 +105,7 @@ thresholds! {
 pub(crate) struct Headroom {
     /// The highest multiple of the gains at which the duty was as quiet as predicted.
     pub(crate) quiet: f64,
-    /// The multiple that was wanted.
+    /// The multiple that was wanted, or the highest at which anything can be heard beside the rounding of a coarse encoder.
     pub(crate) wanted: f64,
     /// Nothing could be heard at some of the gains, or an oscillation once and not again: what is called quiet may be rough.
     pub(crate) is_doubtful: bool,
@@ -394,7 +394,7 @@ pub(crate) fn headroom<L: Law>(
     let bound = |raised: &Raised<'_, L>, factor: f64| {
         (MARGIN.too_rough * predicted(raised, factor)).max(MARGIN.least_rough)
     };
-    let mut is_doubtful = false;
+    let (mut is_doubtful, mut is_too_loud) = (false, false);
     let mut heard_above: Option<f64> = None;
     let (mut quiet, mut written) = (0.0, 1.0);
     let mut loudness = Loudness::default();
@@ -406,7 +406,7 @@ pub(crate) fn headroom<L: Law>(
             if predicted(&raised, factor) > MARGIN.loudest {
                 // The rounding of a coarse encoder alone makes such a noise.
                 is_doubtful = quiet < wanted_factor(task.goal.ms);
-                quiet = wanted;
+                is_too_loud = true;
                 break;
             }
             raised.write(guard, factor)?;
@@ -458,7 +458,10 @@ pub(crate) fn headroom<L: Law>(
         quiet = quiet_for_longer(guard, &mut raised, bound, quiet)?;
     }
     guard.duty(0.0)?;
-    Ok(Headroom { quiet: heard_above.unwrap_or(quiet), wanted, is_doubtful })
+    let quiet = heard_above.unwrap_or(quiet);
+    // Nothing was heard as far as anything could be.
+    let wanted = if is_too_loud && quiet >= written { quiet } else { wanted };
+    Ok(Headroom { quiet, wanted, is_doubtful })
 }
 
 /// The highest multiple that stays quiet for one stay more: an oscillation that grows by a hundredth in a tick is not heard in the first. From one that does not the

@@ -16,19 +16,20 @@ use brushwork_tuning_bench::unit::UnderTest;
 /// Lowest and highest figure that is as usual.
 type Range = (f64, f64);
 
-/// Method, accepted %, good %, median cost. Gains are designed for the longest lag that is still likely, which costs some speed.
+/// Method, accepted %, good %, median cost. Gains are designed for the longest lag that is still likely, and raised as far as a springy shaft can be heard beside a coarse encoder: both
+/// cost some speed.
 type Bounds = [(&'static str, Range, Range, Range); 4];
 
 const SEED_7: Bounds = [
     ("velocity", (95.0, 100.0), (74.0, 92.0), (0.9, 1.25)),
     ("pd", (99.0, 100.0), (74.0, 96.0), (0.9, 1.3)),
-    ("pid", (99.0, 100.0), (70.0, 96.0), (1.0, 1.3)),
+    ("pid", (99.0, 100.0), (70.0, 96.0), (1.0, 1.4)),
     ("piv", (99.0, 100.0), (79.0, 96.0), (0.8, 1.15)),
 ];
 
 const SEED_11: Bounds = [
     ("velocity", (91.0, 100.0), (79.0, 100.0), (0.9, 1.2)),
-    ("pd", (99.0, 100.0), (87.0, 100.0), (0.9, 1.2)),
+    ("pd", (99.0, 100.0), (83.0, 100.0), (0.9, 1.2)),
     ("pid", (99.0, 100.0), (75.0, 98.0), (1.0, 1.3)),
     ("piv", (99.0, 100.0), (75.0, 96.0), (0.8, 1.2)),
 ];
