@@ -93,6 +93,10 @@ thresholds! {
         most_ms: f64 = 1.8,
         /// Multiple of the bound beyond which the noise of a duty needs no second look.
         at_once: f64 = 4.0,
+        /// Shares of the speed of a trial between which a motor turns as it was told to between two polls: neither jammed nor running away, and its encoder not lost.
+        turning: (f64, f64) = (0.5, 1.6),
+        /// How many times in a row it does so.
+        turning_polls: usize = 5,
         /// Counts in a tick from which on a speed is laid between two whole numbers of them.
         least_per_tick: f64 = 6.0,
         /// Predicted noise of the duty, as a share of full, above which nothing can be heard beside it.
@@ -305,14 +309,32 @@ impl<'t, L: Law> Raised<'t, L> {
         guard.speed(if self.side > 0.0 { self.speeds.1 } else { self.speeds.0 })
     }
 
-    /// Deviation of the duty in the last part of a stay: on the other side of a step, or once more on the same. To and fro it is always the other way.
+    /// Whether a motor that goes to and fro turns about as it was told to.
+    fn turns(&self, guard: &ExperimentGuard<'_, L>) -> bool {
+        let (low, high) = MARGIN.turning;
+        let told = self.side * self.speeds.1;
+        let latest = &guard.points[guard.points.len().saturating_sub(MARGIN.turning_polls + 1)..];
+        let mut shares = latest
+            .windows(2)
+            .map(|pair| (pair[1].counts - pair[0].counts) / (pair[1].t - pair[0].t).max(1e-6) / told);
+        latest.len() > MARGIN.turning_polls && shares.all(|share| share > low && share < high)
+    }
+
+    /// Deviation of the duty in the last part of a stay, infinite where it swings quicker than polls see: on the other side of a step, or once more on the same. To and fro
+    /// it is always the other way.
     fn activity(&mut self, guard: &mut ExperimentGuard<'_, L>, is_step: bool) -> Result<f64, Cause> {
         if is_step || self.about.is_some() {
             self.side = -self.side;
         }
         self.go(guard)?;
         let from_s = guard.now_s() + (1.0 - MARGIN.heard) * self.tried_s;
-        guard.poll_for(self.tried_s, true)?;
+        match guard.poll_for(self.tried_s, true) {
+            // Its duty, which swings quicker than polls see, does not explain its speed. The speed is the one that it was given.
+            Err(Cause::Stalled) if self.part == Part::DerivativeByPositions && self.turns(guard) => {
+                return Ok(f64::INFINITY);
+            }
+            polled => polled?,
+        }
         let duties: Vec<(f64, f64)> =
             guard.points.iter().filter_map(|point| point.duty).filter(|duty| duty.0 >= from_s).collect();
         Ok(deviation(&duties))
@@ -534,7 +556,7 @@ fn lowered_until_quiet<L: Law>(
             return Ok(Some(share));
         }
     }
-    let falls_with_gains = heard >= MARGIN.noise_share * lowest * rough;
+    let falls_with_gains = rough.is_finite() && heard >= MARGIN.noise_share * lowest * rough;
     Ok((!falls_with_gains).then_some(lowest))
 }
 
