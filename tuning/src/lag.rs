@@ -67,7 +67,7 @@ thresholds! {
         /// How much larger than the least the misfit of another minimum may be for it to count, in units of the reduced chi-square (of 1 where that is less).
         likely: f64 = 4.0,
         /// The same of a shorter filter than the likeliest one, behind which a loop on the position is to keep its margin: three standard deviations, since cogs bend the record of
-        /// a quick motor alike for all of it. With 4, of 575 PIV loops of another make five had a true Ms above 1.8 without a warning (MEASURED.md).
+        /// a quick motor alike for all of it. With 4, of 458 PIV loops of another make (seeds 1003, 1007, 1014 and 1015) five had a true Ms above 1.8 without a warning (MEASURED.md).
         likely_filter: f64 = 9.0,
     }
 }
