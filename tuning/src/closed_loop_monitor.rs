@@ -32,7 +32,7 @@ thresholds! {
         /// Lowest and highest friction, as multiples of that of the model.
         friction: (f64, f64) = (0.5, 1.5),
         /// Least friction that the highest one is taken from, as a share of the duty at which the probe saw the motor start: where friction falls with the speed, a model of
-        /// one friction for all speeds may have none. Of 720 loops on the position of another make four stood still below that duty and were called jammed.
+        /// one friction for all speeds may have none. Of 720 loops on the position of another make (seeds 1009 and 1010) five motors stood or crept below that duty and were called jammed.
         of_start: f64 = 0.5,
         /// Duty on top of the highest friction, as a share of full.
         more_friction: f64 = 0.02,
@@ -63,8 +63,8 @@ thresholds! {
         /// How far a stretch may be outside its bounds: counts, seconds that the stamps of its ends and of the speed before it may be off, and shares of the speed before
         /// it and of the speed at full duty.
         margin: Margin = Margin { counts: 4.0, stamp_s: 0.0025, speed: 0.06, full: 0.012 },
-        /// Longest tick for which that time of the stamps is enough, in seconds: counts are up to a tick old when they are read. A longer tick makes it longer. At 200 Hz, of
-        /// 360 drums of another make three were called jammed for it.
+        /// Longest tick for which that time of the stamps is enough, in seconds: counts are up to a tick old when they are read. A longer tick makes it longer. Of 2,880
+        /// runs on motors of another make three drums at 200 Hz were called jammed for it.
         stamp_tick_s: f64 = 1.0 / 300.0,
         /// The same where the counts stand still: no roughness and no late stamp makes them stand.
         standing_margin: Margin = Margin { counts: 4.0, stamp_s: 0.0, speed: 0.1, full: 0.005 },
