@@ -64,8 +64,8 @@ impl<L: Law> ExperimentGuard<'_, L> {
         (ms(late.longest_s), ms(late.at_s - self.epoch_s))
     }
 
-    /// Does a stretch of the run, and does it again, up to a number of times, where this computer answered late meanwhile: what was seen then
-    /// says nothing. The last time figures that came of it count, and are marked. `anew` says whether nothing is known of the motor before.
+    /// Does a stretch of the run, and does it again, up to a number of times and as long as the time limit allows, where this computer answered late meanwhile: what was
+    /// seen then says nothing. The last time, or where the limit cuts the next one short, figures that came of it count, and are marked. `anew` says whether nothing is known of the motor before.
     pub(crate) fn stretch<T, R: Clone>(
         &mut self,
         anew: bool,
@@ -77,8 +77,11 @@ impl<L: Law> ExperimentGuard<'_, L> {
             return work(self, report);
         }
         let (before, monitor) = (report.clone(), self.monitor.clone());
+        // What came late and was done again all the same.
+        let mut kept = None;
         loop {
             (self.pace, self.stretch_from) = (Pace::default(), self.exchanges.len());
+            let began_s = self.now_s();
             let seen = work(self, report);
             let cause = seen.as_ref().err().copied();
             let outcome = seen.map_err(|cause| self.concluded(cause));
@@ -87,19 +90,29 @@ impl<L: Law> ExperimentGuard<'_, L> {
                 Ok(_) => late.is_some(),
                 Err(cause) => matches!(cause, Cause::AnsweredLate { .. }),
             };
-            if is_late && self.tries < self.options.late_tries {
+            let would_end_s = 2.0 * self.now_s() - began_s;
+            let is_time_left = would_end_s < self.options.time_limit_s;
+            if is_late && self.tries < self.options.late_tries && is_time_left {
                 self.tries += 1;
                 // What is concluded after that is held against it too: the motor may have been left in another state than a run leaves it in.
                 self.kept_late = self.kept_late.or(late).or(self.pace.longest());
                 self.kept_cause = cause;
-                report.clone_from(&before);
+                let seen = std::mem::replace(report, before.clone());
                 let whose = match &outcome {
                     Err(Cause::AnsweredLate { whose, .. }) => *whose,
                     Ok(_) | Err(_) => late.map_or(Whose::default(), |late| late.whose()),
                 };
                 self.begin_again(anew, &monitor, whose)?;
+                kept = outcome.ok().zip(late).map(|(outcome, late)| (seen, outcome, late)).or(kept);
                 continue;
             }
+            let (outcome, late) = match kept.filter(|_| cause == Some(Cause::TimeLimit)) {
+                Some((seen, outcome, late)) => {
+                    *report = seen;
+                    (Ok(outcome), Some(late))
+                }
+                None => (outcome, late),
+            };
             self.kept_cause = self.kept_cause.filter(|_| outcome.is_err());
             if let Some(late) = late.filter(|_| outcome.is_ok()) {
                 let (longest_gap_ms, at_ms) = self.milliseconds(late);

@@ -294,6 +294,22 @@ fn a_stretch_over_a_line_that_stood_still_is_done_again_and_gives_gains() {
     }
 }
 
+/// A run that has no time left for another try keeps what it has, with a mark.
+#[test]
+fn a_stretch_is_not_done_again_beyond_the_time_limit() {
+    let plant = specimen(31, 0);
+    let mut request = request_of(&plant, Method::Velocity);
+    let quiet = tune(&mut Unit::axis(&plant), &request).seconds.1;
+    request.guard.time_limit_s = 1.2 * quiet;
+    let mut axis = <ControlLaw as Unit>::axis(&plant);
+    let from = axis.now() + Duration::from_secs_f64(quiet - 0.3);
+    axis.carrier.stalls = vec![(from, Duration::from_millis(150))];
+    let report = tune(&mut axis, &request);
+    assert_ne!(report.verdict, Verdict::Refused, "{:?}", report.causes);
+    let is_marked = report.causes.iter().any(|cause| matches!(cause, Cause::TakenLate { .. }));
+    assert!(is_marked, "{:?}", report.causes);
+}
+
 /// A fault that comes after a late gap is seen in a stretch that is done again for the gap's sake. What the second try tells, in time, is the machine's.
 #[test]
 fn a_fault_that_a_timely_second_try_shows_again_is_named() {

@@ -170,8 +170,8 @@ fn positions_are_tuned_by_step_and_by_relay_freely_and_in_a_travel() {
                 let case = format!("{method:?} {loop_method:?} {seconds:?}, plant {number}");
                 println!("{case}: {:?} {:?} {:.1} s", report.verdict, report.causes, report.seconds.1);
                 assert!(report.replay().as_ref() == Some(&report), "{case}: the replay differs");
-                // The rules for positions are slow with a flywheel.
-                let is_slow = report.causes.first() == Some(&Cause::TimeLimit);
+                // The rules for positions are slow with a flywheel, and its stretch may have to be done again.
+                let is_slow = report.seconds.1 >= asked.guard.time_limit_s;
                 tuned += usize::from(!is_slow && assert_sound(&plant, &report, &case));
             }
             assert!(tuned >= 5, "{method:?} {loop_method:?} {seconds:?}: {tuned} of {PLANTS}");
