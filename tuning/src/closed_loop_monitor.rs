@@ -169,7 +169,7 @@ impl ClosedLoopMonitor {
         }
     }
 
-    /// The velocity loop has these gains. Where a tick sees a count or none, the duty jumps between two values, and polls in step with
+    /// The loop has these gains. Where a tick sees a count or none, the duty jumps between two values, and polls in step with
     /// the ticks may see the same one for long.
     pub(crate) fn hold(&mut self, step_duty: f64) {
         self.step_duty = step_duty;

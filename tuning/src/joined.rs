@@ -247,10 +247,10 @@ impl<A: LeadingLaw, P: LawPart> Law for Both<A, P> {
         }
     }
 
-    fn step_duty(&self, write: &Self::Write) -> Option<f64> {
-        match write {
-            Either::First(write) => self.first.step_duty(write),
-            Either::Second(write) => self.second.law()?.step_duty(write),
+    fn step_duty(&self, registers: &Self::Registers) -> f64 {
+        match self.second.law() {
+            Some(law) => law.step_duty(&registers.second),
+            None => self.first.step_duty(&registers.first),
         }
     }
 

@@ -216,9 +216,9 @@ pub trait Law:
     fn before(held: &Self::Held) -> Self::Registers;
     /// The same after a write.
     fn take(registers: &mut Self::Registers, write: &Self::Write);
-    /// The duty that one count more in a tick makes, where a write changes it.
-    fn step_duty(&self, _write: &Self::Write) -> Option<f64> {
-        None
+    /// The duty that one count more in a tick makes under these registers, as a share of full.
+    fn step_duty(&self, _registers: &Self::Registers) -> f64 {
+        0.0
     }
     /// A write with its answer.
     fn note(write: Self::Write, answer: Result<(), AxisError>) -> Self::Note;

@@ -294,11 +294,7 @@ impl<'t, L: Law> Raised<'t, L> {
         }
         let travel = guard.proposed_travel(self.task.qpps);
         let registers = self.task.law.registers(&guard.setup.held, &gains, self.task.qpps, travel);
-        guard.write_all(&registers, true)?;
-        // What one count in a tick does to the duty.
-        let d = gains.position.map_or(0.0, |position| position.d);
-        guard.monitor.hold(d / self.task.law.tick_s() / self.task.qpps);
-        Ok(())
+        guard.write_all(&registers, true)
     }
 
     /// Has the motor turn at the speed of a side.

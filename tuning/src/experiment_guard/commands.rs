@@ -139,9 +139,8 @@ impl<L: Law> ExperimentGuard<'_, L> {
     /// Writes registers to RAM; they are put back unless the run keeps its own.
     pub fn write(&mut self, write: L::Write) -> Result<(), Cause> {
         self.gains_touched = true;
-        if let Some(step_duty) = self.law.step_duty(&write) {
-            self.monitor.hold(step_duty);
-        }
+        L::take(&mut self.registers, &write);
+        self.monitor.hold(self.law.step_duty(&self.registers));
         if self.facts.writes_at_rest {
             self.pause();
             return retried(|| self.axis.write(write));

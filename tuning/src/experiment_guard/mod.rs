@@ -133,6 +133,8 @@ pub struct ExperimentGuard<'a, L: Law> {
     kept: Option<L::Registers>,
     stays_off: bool,
     gains_touched: bool,
+    /// The registers in force.
+    registers: L::Registers,
     timeout_touched: bool,
     limits_touched: bool,
     winding_touched: bool,
@@ -175,6 +177,7 @@ impl<'a, L: Law> ExperimentGuard<'a, L> {
             kept: None,
             stays_off: false,
             gains_touched: false,
+            registers: L::before(&setup.held),
             timeout_touched: false,
             limits_touched: false,
             winding_touched: false,

@@ -115,10 +115,12 @@ impl Law for McpLaw {
         }
     }
 
-    fn step_duty(&self, write: &McpWrite) -> Option<f64> {
-        let McpWrite::Velocity(registers) = write else { return None };
-        let gain = f64::from(registers.p) / self.velocity_scale;
-        Some(gain * f64::from(self.rate_hz) / f64::from(registers.qpps.max(1)))
+    fn step_duty(&self, registers: &McpRegisters) -> f64 {
+        let velocity = registers.velocity.unwrap_or_default();
+        let Gains { velocity: Pid { p, .. }, position, .. } = self.gains(registers, 0.0, true);
+        // A position loop over a velocity loop without gains gives the duty itself.
+        let gain = if p > 0.0 { p } else { position.map_or(0.0, |position| position.d) };
+        gain * f64::from(self.rate_hz) / f64::from(velocity.qpps.max(1))
     }
 
     fn note(write: McpWrite, answer: Result<(), AxisError>) -> McpNote {
@@ -245,5 +247,18 @@ mod tests {
         };
         let quieter = noise(filtered) / noise(plain);
         assert!((0.02..0.4).contains(&quieter), "{quieter}");
+    }
+
+    #[test]
+    fn one_count_more_in_a_tick_makes_the_duty_that_p_of_the_speed_makes_or_d_of_a_position_alone() {
+        let law = McpLaw::default();
+        let held = McpHeld::default();
+        let velocity = Gains { velocity: Pid { p: 2.0, i: 1.0, d: 0.0 }, ..Gains::default() };
+        let near = |found: f64, known: f64| assert!((found / known - 1.0).abs() < 1e-3, "{found} {known}");
+        near(law.step_duty(&law.registers(&held, &velocity, QPPS, None)), 2.0 * 300.0 / QPPS);
+        let direct = law.registers(&held, &pd(40.0), QPPS, None);
+        near(law.step_duty(&direct), 0.03 * 40.0 * 300.0 / QPPS);
+        let both = McpRegisters { velocity: law.registers(&held, &velocity, QPPS, None).velocity, ..direct };
+        near(law.step_duty(&both), 2.0 * 300.0 / QPPS);
     }
 }

@@ -159,10 +159,11 @@ impl Law for MotionMindLaw {
         registers.motion_mind = Some(*written);
     }
 
-    fn step_duty(&self, write: &MotionMindWrite) -> Option<f64> {
-        let (MotionMindWrite::Loop(written) | MotionMindWrite::End(written)) = write;
-        let gain = f64::from(written.pterm) + f64::from(written.dterm);
-        Some((gain / 2.0_f64.powi(i32::from(written.pidscalar)) / FULL_PWM).min(1.0))
+    fn step_duty(&self, registers: &MotionMindProposal) -> f64 {
+        registers.motion_mind.map_or(0.0, |written| {
+            let gain = f64::from(written.pterm) + f64::from(written.dterm);
+            (gain / 2.0_f64.powi(i32::from(written.pidscalar)) / FULL_PWM).min(1.0)
+        })
     }
 
     fn note(write: MotionMindWrite, answer: Result<(), AxisError>) -> MotionMindNote {

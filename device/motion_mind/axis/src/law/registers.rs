@@ -197,10 +197,15 @@ mod tests {
     fn a_count_more_in_a_loop_makes_the_duty_that_the_formula_of_the_manual_says() {
         // P of the one count and D of the slope that it is: (6000 + 2000) / 2^14 steps of 1023.
         let written = MotionMindRegisters { pterm: 6000, dterm: 2000, pidscalar: 14, ..Default::default() };
-        let step_duty = MotionMindLaw::default().step_duty(&MotionMindWrite::Loop(written)).unwrap();
+        let step_duty_of = |written: MotionMindRegisters| {
+            let mut registers = MotionMindProposal::default();
+            MotionMindLaw::take(&mut registers, &MotionMindWrite::Loop(written));
+            MotionMindLaw::default().step_duty(&registers)
+        };
+        let step_duty = step_duty_of(written);
         assert!((step_duty - 8000.0 / 16_384.0 / 1023.0).abs() < 1e-12, "{step_duty}");
         let most = MotionMindRegisters { pterm: u16::MAX, pidscalar: 0, ..written };
-        assert_eq!(MotionMindLaw::default().step_duty(&MotionMindWrite::Loop(most)), Some(1.0));
+        assert_eq!(step_duty_of(most), 1.0);
     }
 
     #[test]
