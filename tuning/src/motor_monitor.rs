@@ -177,7 +177,13 @@ impl MotorMonitor {
             Some(ClosedLoopMonitor::new(PlantModel { drive_limit, ..*model }, self.start_duty));
     }
 
-    /// The velocity loop is given other gains.
+    /// The speed at full duty as far as it is known, counts/s; 0 before anything is.
+    #[must_use]
+    pub fn no_load_speed(&self) -> f64 {
+        self.gain
+    }
+
+    /// The loop is given other gains.
     pub(crate) fn hold(&mut self, step_duty: f64) {
         if let Some(closed_loop) = &mut self.closed_loop {
             closed_loop.hold(step_duty);

@@ -14,8 +14,14 @@ use brushwork_tuning::settle::slope;
 
 /// Duty above the starting one at which the motor creeps.
 const CREEP_DUTY: f64 = 0.04;
-/// How long it creeps at the most, and from when on readings count, s: the motor has to have gathered its speed.
+/// Counts in one tick each that readings must be expected to meet, since D makes a pulse of a tick of each, and the most duty above the starting one for that: the coarse
+/// encoder of a slow motor gives one count in twenty ticks at the usual creep, of which twenty readings may see none. Of seed 1017 of another make one D was read forty
+/// times too small so, and its loop called tuned at a true Ms of 3.4.
+const ENOUGH_PULSES: f64 = 12.0;
+const MOST_CREEP_DUTY: f64 = 0.3;
+/// How long it creeps, at the most where few counts came, and from when on readings count, s: the motor has to have gathered its speed.
 const CREEP_S: f64 = 0.4;
+const LONGEST_CREEP_S: f64 = 1.5;
 const SETTLED_S: f64 = 0.1;
 /// The target lies so many times as far away as the motor creeps, and how far that is on an axis that turns freely, counts.
 const FAR: f64 = 8.0;
@@ -33,6 +39,12 @@ const MOST_OF_ROOM: f64 = 0.1;
 const TAKEN_DUTY: f64 = 0.012;
 const MOST_KICK: f64 = 0.05;
 const LEAST_SHARE: f64 = 0.25;
+/// Least speed that D's register is chosen for, as a share of what the creep's duty gives a motor whose friction is that of its start. Cogs may keep it to a tenth of that,
+/// where D would take the duty away ten times over, of all that the speed can be, and swing.
+const OF_CREEP: f64 = 0.3;
+/// How many registers are tried: for a D counted per second, per tick, and per what the second one told where that is so many times more than it was meant for.
+const TRIES: u32 = 3;
+const TOO_STRONG: f64 = 4.0;
 /// The scale of P has to hold while the motor turns, too: how far off the duty may be without D.
 const P_TOLERANCE: f64 = 0.06;
 /// The shortest tick that is believed to be a second's part and no second, s. Differences of whole counts have to make so much, counts squared, and be read so often.
@@ -88,10 +100,15 @@ pub(crate) fn derivative_under<L: Law>(
         return Ok(None);
     };
     guard.progress("Reading what D takes from the duty while the motor creeps");
-    let duty = start_duty + CREEP_DUTY;
+    let no_load_speed = guard.monitor.no_load_speed();
+    let enough = ENOUGH_PULSES * guard.options.poll_s * rate_hz;
+    let telling_speed = (enough / (CREEP_S - SETTLED_S)).min(rate_hz);
+    let telling_duty = if no_load_speed > 0.0 { telling_speed / no_load_speed } else { CREEP_DUTY };
+    let creep_duty = telling_duty.clamp(CREEP_DUTY, MOST_CREEP_DUTY);
+    let duty = start_duty + creep_duty;
     let is_cogged = guard.monitor.tau_bounds_s.is_some_and(|tau| (tau.0 * tau.1).sqrt() < COGGED_TAU_S);
     let mut creeps = |direction: f64, duty: f64, d: f64| {
-        let turned = creep.run(guard, (direction, duty), scale, d);
+        let turned = creep.run(guard, (direction, duty), scale, d, enough);
         coast(guard)?;
         turned
     };
@@ -100,13 +117,18 @@ pub(crate) fn derivative_under<L: Law>(
         return Ok(None);
     }
     // Registers, were D counted per second; a register that takes nothing away then is tried as one counted per tick.
-    let per_second = (TAKEN_DUTY / plain.speed).min(MOST_KICK / rate_hz) * QPPS * scale;
+    let gain = (TAKEN_DUTY / plain.speed.max(OF_CREEP * creep_duty * no_load_speed)).min(MOST_KICK / rate_hz);
     let mut direction = -creep.direction;
-    for d in [per_second, per_second * rate_hz] {
-        let d = d.round().clamp(1.0, f64::from(i32::MAX));
+    let mut seconds = 1.0;
+    for n in 0..TRIES {
+        let d = (gain * QPPS * scale / seconds).round().clamp(1.0, f64::from(i32::MAX));
         let Some(turned) = creeps(direction, duty, d)? else { return Ok(None) };
-        let found = turned.missing_duty * QPPS * scale / (d * turned.speed);
-        if turned.missing_duty > LEAST_SHARE * TAKEN_DUTY.min(MOST_KICK * plain.speed / rate_hz) {
+        // P may itself be a little off.
+        let taken = turned.missing_duty - plain.missing_duty;
+        let found = taken * QPPS * scale / (d * turned.speed);
+        // Pulses that are so high are cut, and few of them are read.
+        let is_too_strong = found > TOO_STRONG * seconds;
+        if !is_too_strong && taken > LEAST_SHARE * gain * plain.speed {
             // A D per tick tells the rate of the loop itself.
             let rate_hz = if found < MOST_TICK_S { 1.0 / found } else { rate_hz };
             let mut told = turned.told(rate_hz);
@@ -125,7 +147,7 @@ pub(crate) fn derivative_under<L: Law>(
                     break;
                 }
                 direction = -direction;
-                let other = creeps(direction, duty + more * CREEP_DUTY, d)?;
+                let other = creeps(direction, duty + more * creep_duty, d)?;
                 told = Told::of_both(told, other.and_then(|turned| turned.told(rate_hz)));
             }
             let is_open = told.is_none_or(|told| told.filter.is_none() && told.roughness < WHOLE);
@@ -134,6 +156,11 @@ pub(crate) fn derivative_under<L: Law>(
             let roughness = told.map(|told| told.roughness);
             return Ok(Some(DerivativeFound { seconds: found, roughness, filter }));
         }
+        seconds = match n {
+            _ if is_too_strong => found,
+            0 => 1.0 / rate_hz,
+            _ => break,
+        };
         direction = -direction;
     }
     Ok(None)
@@ -329,6 +356,7 @@ impl Creep {
         (direction, duty): (f64, f64),
         scale: f64,
         d: f64,
+        enough: f64,
     ) -> Result<Option<Turned>, Cause> {
         let from = guard.points.last().map_or(0.0, |point| point.counts);
         let target = (from + direction * FAR * self.counts).clamp(self.limits.0, self.limits.1).round();
@@ -341,9 +369,16 @@ impl Creep {
         guard.set(McpWrite::PositionLoop(registers))?;
         guard.position(target, QPPS as u32)?;
         let (start_s, first) = (guard.now_s(), guard.points.len());
-        while guard.now_s() < start_s + CREEP_S {
+        let mut settled_at = None;
+        loop {
             let point = guard.poll(true)?;
-            if point.is_some_and(|point| (point.counts - from).abs() > self.counts) {
+            let crept_s = guard.now_s() - start_s;
+            if let Some(point) = point.filter(|_| crept_s > SETTLED_S) {
+                settled_at.get_or_insert(point.counts);
+            }
+            let is_far = |from: f64, far: f64| point.is_some_and(|point| (point.counts - from).abs() > far);
+            let is_told = settled_at.is_some_and(|settled_at| is_far(settled_at, enough));
+            if is_far(from, self.counts) || crept_s > if is_told { CREEP_S } else { LONGEST_CREEP_S } {
                 break;
             }
         }
