@@ -157,6 +157,13 @@ causes! {
         tune the position as PIV, whose integral carries the load.";
     /// The controller's loop follows no law that is known.
     UnknownLaw "The law of the controller's loop could not be measured, so gains cannot be computed for it.";
+    /// A position loop alone drives nothing.
+    NoDirectLoop "This controller adds nothing of the speed setpoint to the duty, so a position loop without a velocity loop under it gives no duty. Tune the \
+        position as PIV, which has one.";
+    /// Nothing said what law the loop follows.
+    LawAssumed "No duty was read under a speed command, so the law of the controller's loop could not be measured; the gains assume the usual one.";
+    /// Nothing said what the derivative of a position multiplies.
+    DerivativeUnknown "What D of the position loop multiplies could not be measured; the gains assume that it is counted as I is.";
     /// Nothing said how often the controller's loop computes.
     RateUnknown "How often in a second the controller's loop computes could not be measured; the gains assume the usual rate.";
     /// The controller is not in the mode in which it can be tuned.
@@ -259,6 +266,7 @@ impl Cause {
                 | Self::CurrentLimited
                 | Self::NotVerified
                 | Self::UnknownLaw
+                | Self::NoDirectLoop
                 | Self::TimeLimit
                 | Self::Refused
         )

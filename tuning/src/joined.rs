@@ -289,8 +289,16 @@ impl<A: LeadingLaw, P: LawPart> Law for Both<A, P> {
         }
     }
 
+    fn why_not_found(findings: &Self::Findings) -> Cause {
+        A::why_not_found(findings)
+    }
+
     fn is_rate_known(findings: &Self::Findings) -> bool {
         A::is_rate_known(findings)
+    }
+
+    fn is_derivative_known(findings: &Self::Findings) -> bool {
+        A::is_derivative_known(findings)
     }
 
     fn derivative_noise(findings: &Self::Findings) -> Option<f64> {

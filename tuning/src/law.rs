@@ -241,9 +241,21 @@ pub trait Law:
         None
     }
 
+    /// Why these findings give no law.
+    #[must_use]
+    fn why_not_found(_findings: &Self::Findings) -> Cause {
+        Cause::UnknownLaw
+    }
+
     /// Whether these findings say how often in a second the loop computes.
     #[must_use]
     fn is_rate_known(_findings: &Self::Findings) -> bool {
+        true
+    }
+
+    /// Whether these findings say what the derivative of a position multiplies.
+    #[must_use]
+    fn is_derivative_known(_findings: &Self::Findings) -> bool {
         true
     }
 

@@ -355,11 +355,17 @@ fn with_law<L: LawProbe>(
     let position = request.method != Method::Velocity;
     let held = guard.setup.held;
     let found = L::probe(guard, &held, &|write| write, probe.start_duty, request.method)?;
-    let Some(findings) = found else { return Ok(*request) };
+    let Some(findings) = found else {
+        report.causes.push(Cause::LawAssumed);
+        return Ok(*request);
+    };
     report.law = Some(findings);
-    let law = request.law.found(&findings, position).ok_or(Cause::UnknownLaw)?;
+    let law = request.law.found(&findings, position).ok_or_else(|| L::why_not_found(&findings))?;
     if !L::is_rate_known(&findings) {
         report.causes.push(Cause::RateUnknown);
+    }
+    if matches!(request.method, Method::Pd | Method::Pid) && !L::is_derivative_known(&findings) {
+        report.causes.push(Cause::DerivativeUnknown);
     }
     report.request.law = law;
     guard.law = law;

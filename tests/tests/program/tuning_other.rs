@@ -235,7 +235,7 @@ fn manners() -> Vec<(&'static str, Manner)> {
         ("slow replies", Manner { delay: Duration::from_millis(18), ..usual.clone() }),
         ("replies get lost", Manner { loses_one_in: 37, ..usual.clone() }),
         (
-            "nothing but the least",
+            TELLS_NO_DUTY,
             Manner {
                 tells_status: false,
                 silent: [optional, vec![24, 48, 49, 78, 79, 90]].concat(),
@@ -247,11 +247,14 @@ fn manners() -> Vec<(&'static str, Manner)> {
     ]
 }
 
+/// The manner of a controller that takes no command to read the duty (48), so that a run can only assume its law.
+const TELLS_NO_DUTY: &str = "nothing but the least";
+
 /// What a run in each manner must come to: gains, or this cause.
 fn refusal_of(name: &str, method: Method) -> Option<Cause> {
     match (name, method) {
         // Without it, and without velocity gains, its position loop gives no duty at all.
-        ("no feed-forward", Method::Pd) => Some(Cause::UnknownLaw),
+        ("no feed-forward", Method::Pd) => Some(Cause::NoDirectLoop),
         _ => None,
     }
 }
@@ -270,6 +273,8 @@ fn every_manner_of_controller_ends_in_gains_or_in_an_honest_refusal() {
                 Some(cause) => assert_eq!(report.causes.first(), Some(&cause), "{name}, {method:?}"),
                 None => {
                     assert_ne!(report.verdict, Verdict::Refused, "{name}, {method:?}: {:?}", report.causes);
+                    let is_assumed = report.causes.contains(&Cause::LawAssumed);
+                    assert_eq!(is_assumed, name == TELLS_NO_DUTY, "{name}, {method:?}: {:?}", report.causes);
                 }
             }
         }

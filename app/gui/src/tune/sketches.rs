@@ -152,6 +152,7 @@ impl Sketch {
             }
             Cause::Refused => unit("?", "The controller did not take a command"),
             Cause::UnknownLaw => unit("?", "The controller's loop follows no law that is known"),
+            Cause::NoDirectLoop => unit("0", "A position loop alone gives no duty here: choose PIV"),
             Cause::NotVerified => unit("~", "The loop oscillates more than the model predicts"),
             _ => return None,
         })

@@ -141,8 +141,17 @@ impl Law for McpLaw {
         findings.law(self, is_position)
     }
 
+    fn why_not_found(findings: &LawFindings) -> Cause {
+        let is_without = findings.known_feed_forward() == Some(false) && findings.position_scale.is_none();
+        if is_without { Cause::NoDirectLoop } else { Cause::UnknownLaw }
+    }
+
     fn is_rate_known(findings: &LawFindings) -> bool {
         findings.is_rate_known()
+    }
+
+    fn is_derivative_known(findings: &LawFindings) -> bool {
+        findings.derivative_s.is_some()
     }
 
     fn derivative_noise(findings: &LawFindings) -> Option<f64> {

@@ -19,9 +19,13 @@ use serde::{Deserialize, Serialize};
 /// Share of the starting duty that is given, and its bounds.
 const DUTY_SHARE: f64 = 0.35;
 const DUTY: (f64, f64) = (0.006, 0.03);
-/// How long a duty is read, and how long an integral is watched, s.
+/// How long after its command a loop may act, how long a duty is read, and how long an integral is watched, s.
+const ACTS_S: f64 = 0.012;
 const READ_S: f64 = 0.05;
 const SUM_S: f64 = 0.16;
+/// Readings of the duty without which it is polled on, and how often at the most: where one in five replies is lost, all of 50 ms are once in a hundred times.
+const ENOUGH_READINGS: usize = 2;
+const MORE_POLLS: u32 = 10;
 /// Integral gains tried: the first suits sums over ticks, the second sums over seconds. What each should give at 300 ticks a second
 /// or one second is over half of the duty itself.
 const INTEGRALS: [f64; 2] = [0.012, 3.6];
@@ -362,7 +366,7 @@ fn growth_under<L: Law>(
     Ok(if spread > 0.0 { both / spread } else { 0.0 })
 }
 
-/// The polls under a speed command; the first may come before the loop has acted.
+/// The polls under a speed command.
 fn under<L: Law>(
     guard: &mut Probed<'_, '_, L>,
     speed: f64,
@@ -371,10 +375,25 @@ fn under<L: Law>(
 ) -> Result<Vec<Point>, Cause> {
     guard.set(registers)?;
     guard.speed(speed)?;
-    let from_s = guard.now_s() + 0.012;
-    guard.poll_for(0.012 + seconds, true)?;
+    read_for(guard, seconds)
+}
+
+/// Polls that have a duty after the command that was just given, which takes the drive off again. The first may come before the loop has acted; where replies are lost
+/// it is polled for longer.
+fn read_for<L: Law>(guard: &mut Probed<'_, '_, L>, seconds: f64) -> Result<Vec<Point>, Cause> {
+    let from_s = guard.now_s() + ACTS_S;
+    guard.poll_for(ACTS_S + seconds, true)?;
+    let read = |guard: &Probed<'_, '_, L>| -> Vec<Point> {
+        guard.points.iter().copied().filter(|p| p.duty.is_some_and(|duty| duty.0 > from_s)).collect()
+    };
+    for _ in 0..MORE_POLLS {
+        if read(guard).len() >= ENOUGH_READINGS {
+            break;
+        }
+        guard.poll(true)?;
+    }
     guard.duty(0.0)?;
-    Ok(guard.points.iter().copied().filter(|p| p.duty.is_some_and(|duty| duty.0 > from_s)).collect())
+    Ok(read(guard))
 }
 
 /// The position scale, with what P of the velocity loop is and what duty a speed makes then: with none, P of the position acts on the duty directly
@@ -414,11 +433,7 @@ fn scale_with<L: Law>(
     let direction = if room < 2.0 * ERROR_COUNTS { -1.0 } else { 1.0 };
     let target = here + direction * ERROR_COUNTS;
     guard.position(target, QPPS as u32)?;
-    let from_s = guard.now_s() + 0.012;
-    guard.poll_for(0.012 + READ_S, true)?;
-    guard.duty(0.0)?;
-    let is_seen = |point: &Point| point.duty.is_some_and(|duty| duty.0 > from_s);
-    let seen: Vec<Point> = guard.points.iter().copied().filter(is_seen).collect();
+    let seen = read_for(guard, READ_S)?;
     let ratios = (0..seen.len()).filter_map(|n| {
         let (point, around) = (seen[n], &seen[n.saturating_sub(1)..(n + 2).min(seen.len())]);
         let (t, read) = point.duty?;
