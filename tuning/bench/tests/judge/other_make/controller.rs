@@ -158,8 +158,9 @@ impl Driven {
         if !goes_on {
             *self = Self { now: None, is_clear: false, ..*self };
         }
+        // A creep before it is no part of it.
+        let from = self.now.filter(|_| self.is_clear).map_or(t, |now| now.0);
         self.is_clear |= duty.abs() >= CLEAR_DUTY;
-        let from = if self.is_clear { self.now.map_or(t, |now| now.0) } else { t };
         self.now = Some((from, t));
         self.longest_s = self.longest_s.max(t - from);
     }
