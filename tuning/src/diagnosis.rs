@@ -38,6 +38,12 @@ thresholds! {
         jump: f64 = 0.5,
         /// Multiples of the rough time constant that are tried: of a motor that is not known yet it may be far too long.
         mirror_taus: [f64; 5] = [0.05, 0.2, 0.5, 1.0, 2.0],
+        /// By which factor a current has to grow while the duty is taken away.
+        grown: f64 = 1.5,
+        /// Polls at one duty from which the friction of a slow motor is read.
+        steady: usize = 4,
+        /// The most that it may be, as a multiple of the model's: cogs and Stribeck friction hold a slow motor.
+        most_friction: f64 = 3.0,
         /// Least share by which the current of a turning motor is short of that of a standing one; a battery sags by less.
         short: f64 = 0.3,
         /// Duty above which the motor is driven, as a share of full.
@@ -91,13 +97,19 @@ pub(crate) fn diagnose(monitor: &MotorMonitor, alarm_s: f64, after: &[Point]) ->
     if gain > 0.0 && outruns(&moments, gain, monitor.load_duty, alarm_s) {
         return Cause::EncoderFlipped;
     }
-    if stall.is_some() && !alive {
-        return if turns_unseen(monitor, &moments, alarm_s) { Cause::EncoderLost } else { Cause::Stalled };
+    if !alive {
+        let turns = match stall {
+            Some(stall) => turns_unseen(monitor, stall, &moments, alarm_s),
+            None => turns_unseen_at_all(monitor, &polls, alarm_s),
+        };
+        return if turns { Cause::EncoderLost } else { Cause::Stalled };
     }
-    if !alive || gain <= 0.0 {
+    if gain <= 0.0 {
         return Cause::Stalled;
     }
-    let hypotheses = Hypotheses { moments: &moments, gain, tau_s, limit: limit_of(monitor), alarm_s };
+    let (friction, load) = monitor.opposing();
+    let limit = limit_of(monitor);
+    let hypotheses = Hypotheses { moments: &moments, gain, tau_s, friction, load, limit, alarm_s };
     if hypotheses.is_flipped(stall.is_some()) { Cause::EncoderFlipped } else { Cause::Stalled }
 }
 
@@ -196,13 +208,25 @@ fn outruns(moments: &[Moment], gain: f64, load_duty: f64, alarm_s: f64) -> bool 
         && against > DIAGNOSIS.outrun * with + DIAGNOSIS.least_outrun * gain
 }
 
+/// The same where the current of a standing motor is not known. That of one that stands goes down with its duty, and what brakes a turning one grows; and it stands with
+/// more than it ever drew while it gathered speed.
+fn turns_unseen_at_all(monitor: &MotorMonitor, polls: &[Point], alarm_s: f64) -> bool {
+    let amps = |point: &Point| point.amps.map(f64::abs);
+    let driven =
+        polls.iter().filter(|point| point.t < alarm_s).filter_map(|point| Some((point.t, amps(point)?)));
+    let Some((t, driven)) = driven.last() else { return false };
+    let braked = polls.iter().filter(|point| point.t > alarm_s).filter_map(amps).fold(0.0, f64::max);
+    let least = monitor.least_stall_amps().map_or(0.0, |stall| stall * monitor.duty_at(t).abs());
+    braked > DIAGNOSIS.grown * driven + monitor.no_current_amps()
+        || least > DIAGNOSIS.telling_amps && driven < (1.0 - DIAGNOSIS.short) * least
+}
+
 /// Whether currents are other than those of a motor that stands, while nothing is counted.
-fn turns_unseen(monitor: &MotorMonitor, moments: &[Moment], alarm_s: f64) -> bool {
+fn turns_unseen(monitor: &MotorMonitor, stall: f64, moments: &[Moment], alarm_s: f64) -> bool {
     let limit = limit_of(monitor);
     let still = moments.iter().rposition(|moment| moment.speed != 0.0).map_or(0, |last| last + 1);
     let still = &moments[still..];
-    let least_duty =
-        (DIAGNOSIS.telling_amps / monitor.stall_amps.unwrap_or(f64::INFINITY)).max(DIAGNOSIS.least_duty);
+    let least_duty = (DIAGNOSIS.telling_amps / stall).max(DIAGNOSIS.least_duty);
     let off: Vec<f64> = still
         .iter()
         .map(|moment| (moment.duty.abs().min(moment.duty_before.abs()), moment.current))
@@ -210,7 +234,6 @@ fn turns_unseen(monitor: &MotorMonitor, moments: &[Moment], alarm_s: f64) -> boo
         .filter_map(|(duty, current)| Some(1.0 - current? / duty.min(limit)))
         .collect();
     let driven_off = middle(off).is_some_and(|middle| middle > DIAGNOSIS.short);
-    let stall = monitor.stall_amps.unwrap_or(f64::INFINITY);
     let braked_s = if monitor.is_abrupt {
         DIAGNOSIS.braked_at_once_s
     } else if driven_off {
@@ -240,6 +263,9 @@ struct Hypotheses<'a> {
     moments: &'a [Moment],
     gain: f64,
     tau_s: f64,
+    /// Duties that friction and the load take; 0 before they are known.
+    friction: f64,
+    load: f64,
     limit: f64,
     alarm_s: f64,
 }
@@ -281,8 +307,12 @@ impl Hypotheses<'_> {
                 has_currents && flipped > DIAGNOSIS.objection && stopped < DIAGNOSIS.better * flipped;
             let (by_itself, with_currents) = DIAGNOSIS.mirror_error;
             let most = if agree { with_currents } else { by_itself };
-            let taus = DIAGNOSIS.mirror_taus.iter();
-            !object && taus.map(|scale| self.mirrored(start, scale * self.tau_s)).any(|error| error < most)
+            // A quick motor is told without what opposes it, which may have changed since it was measured; a slow one is not.
+            let opposing = [(0.0, 0.0), (self.friction_before(start), self.load)];
+            let is_mirrored = |scale: &f64| {
+                opposing.into_iter().any(|opposing| self.mirrored(start, scale * self.tau_s, opposing) < most)
+            };
+            !object && DIAGNOSIS.mirror_taus.iter().any(is_mirrored)
         })
     }
 
@@ -308,16 +338,34 @@ impl Hypotheses<'_> {
         misses.sum::<f64>() + DIAGNOSIS.same
     }
 
-    /// Squared error of the mirrored speeds over the squared speeds.
-    fn mirrored(&self, start: usize, tau_s: f64) -> f64 {
+    /// The friction of a motor that is known: what a steady duty left over before that moment, since a slow one may have more than the model says.
+    fn friction_before(&self, start: usize) -> f64 {
+        let before = &self.moments[start.saturating_sub(DIAGNOSIS.steady)..start - 1];
+        let last = &self.moments[start - 2];
+        let is_steady = before.len() + 1 >= DIAGNOSIS.steady
+            && before.iter().all(|moment| moment.duty == last.duty && moment.speed * moment.duty > 0.0);
+        if self.friction == 0.0 || !is_steady {
+            return self.friction;
+        }
+        let speed = before.iter().map(|moment| moment.speed).sum::<f64>() / before.len() as f64;
+        let left = (last.duty - self.load - speed / self.gain) * speed.signum();
+        left.clamp(0.0, DIAGNOSIS.most_friction * self.friction)
+    }
+
+    /// Squared error of the mirrored speeds over the squared speeds, with duties that friction and the load take.
+    fn mirrored(&self, start: usize, tau_s: f64, (friction, load): (f64, f64)) -> f64 {
         // The speeds on either side of the change are a mixture of those before and after it.
         let before = &self.moments[start - 2];
         let (mut speed, mut t) = (before.speed, before.t);
         let (mut error, mut height) = (0.0, 0.0);
         for (n, moment) in self.moments[start - 1..].iter().enumerate() {
             let most = self.gain * self.limit;
-            let drive = (self.gain * moment.duty - speed).clamp(-most, most);
-            speed += drive * (1.0 - (-(moment.t - t) / tau_s).exp());
+            let pull = moment.duty - load;
+            let held = if speed == 0.0 { pull.clamp(-friction, friction) } else { friction * speed.signum() };
+            let drive = (self.gain * (pull - held) - speed).clamp(-most, most);
+            let next = speed + drive * (1.0 - (-(moment.t - t) / tau_s).exp());
+            // Friction stops a motor, but does not turn it.
+            speed = if speed * next < 0.0 && pull.abs() < friction { 0.0 } else { next };
             t = moment.t;
             if n >= 2 {
                 error += (speed + moment.speed).powi(2);
@@ -433,6 +481,52 @@ mod tests {
             (0.142, -469.0, 1.5),
         ];
         assert_eq!(named_in_mid_drive(0.74, 8_200.0, &thrown_back), Cause::Stalled);
+    }
+
+    /// A coreless motor that creeps: most of its duty goes into friction, and it draws next to nothing.
+    #[test]
+    fn an_encoder_that_turns_round_while_the_motor_creeps_is_told_by_its_counts_alone() {
+        let mut monitor = monitor(None);
+        monitor.start_duty = 0.06;
+        monitor.know(&PlantModel {
+            gain_counts_per_s: 150_000.0,
+            tau_s: 0.02,
+            coulomb_duty: 0.03,
+            load_duty: 0.0,
+            drive_limit: None,
+            brake_limit: None,
+            sag: 0.0,
+        });
+        monitor.drive(ALARM_S - 1.2, 0.09);
+        let creep = |t: f64| if t < -0.055 { 8_500.0 * t } else { -8_500.0 * (t + 0.11) };
+        let before = (0..67).map(|n| -1.0 + 0.015 * f64::from(n)).filter(|t| *t < 0.0);
+        let off = [(0.012, -997.0), (0.025, -1006.0), (0.04, -1006.0), (0.055, -1006.0), (0.07, -1006.0)];
+        let polls: Vec<Point> = before
+            .map(|t| poll(t, creep(t), None, Some(0.1)))
+            .chain(off.map(|(t, counts)| poll(t, counts, None, Some(0.02))))
+            .collect();
+        assert_eq!(named(monitor, &polls), Cause::EncoderFlipped);
+    }
+
+    #[test]
+    fn counts_that_stop_are_told_from_a_stop_by_what_the_motor_draws_where_no_stall_current_is_known() {
+        // At full duty from rest 3 A, once it turns 0.2 A.
+        let seen = |braked: [f64; 4]| {
+            let mut monitor = monitor(None);
+            monitor.stall_amps = None;
+            monitor.drive(ALARM_S - 0.5, 1.0);
+            let at = |n: u32| -0.5 + 0.015 * f64::from(n);
+            let turning = |t: f64| if t < -0.45 { 3.0 } else { 0.2 };
+            let stands = braked[0];
+            let amps = |t: f64| if t < -0.055 { turning(t) } else { stands };
+            let driven =
+                (0..34).map(|n| poll(at(n), 2e4 * (at(n).min(-0.055) + 0.5), None, Some(amps(at(n)))));
+            let off = [0.01, 0.025, 0.04, 0.055].into_iter().zip(braked);
+            let off = off.map(|(t, amps)| poll(t, 8_900.0, None, Some(amps)));
+            named(monitor, &driven.chain(off).collect::<Vec<_>>())
+        };
+        assert_eq!(seen([0.2, 0.0, 0.0, 0.0]), Cause::EncoderLost, "it draws what it drew while it turned");
+        assert_eq!(seen([3.2, 1.0, 0.1, 0.0]), Cause::Stalled);
     }
 
     #[test]

@@ -30,6 +30,8 @@ thresholds! {
         reading_duty: f64 = 0.02,
         /// How long the motor turns each way for that, in seconds.
         reading_s: f64 = 0.5,
+        /// How long a motor that does not move by a count is driven for that, in seconds.
+        unmoved_s: f64 = 0.35,
         /// How far the motor turns each way for that, in counts.
         reading_counts: f64 = 300.0,
         /// Readings that are enough, each way.
@@ -112,11 +114,15 @@ fn creep<L: Law>(
 ) -> Result<(), Cause> {
     guard.poll(false)?;
     let from = guard.points.last().map_or(0.0, |point| point.counts);
-    let (until_s, enough) = (guard.now_s() + LAW_PROBE.reading_s, speeds.len() + LAW_PROBE.enough_readings);
+    let enough = speeds.len() + LAW_PROBE.enough_readings;
     guard.duty(duty)?;
+    let began_s = guard.now_s();
+    let until_s = began_s + LAW_PROBE.reading_s;
     while guard.now_s() < until_s && speeds.len() < enough {
         let point = guard.poll(false)?;
-        if point.is_some_and(|point| (point.counts - from).abs() > counts) {
+        let far = point.map_or(0.0, |point| (point.counts - from).abs());
+        // One that does not move tells nothing, and is not driven for longer: a loop that has it soon shows why.
+        if far > counts || far < 1.0 && guard.now_s() > began_s + LAW_PROBE.unmoved_s {
             break;
         }
         speeds.extend(Some(guard.raw_speed()?).filter(|speed| *speed != 0));

@@ -39,6 +39,8 @@ thresholds! {
         start_counts: f64 = 2.0,
         /// How far above the starting duty a duty is clearly higher, as a share of full.
         clearly_higher: f64 = 0.1,
+        /// Least duty at which the current of a motor that gathers speed is remembered, as a share of full.
+        telling_duty: f64 = 0.1,
         /// How long after a duty was given its current has settled, in seconds.
         settled_s: f64 = 0.3,
         /// How far beyond the motor's voltage a duty has to be for a current to be missed, as a share of the friction: the lower bound of the closed-loop monitor.
@@ -120,6 +122,8 @@ pub struct MotorMonitor {
     /// What an identification has found, for the closed-loop monitor.
     closed_loop: Option<ClosedLoopMonitor>,
     current: CurrentSilence,
+    /// Highest current over duty of the motor while it gathered speed, A: that of a standing one is more.
+    least_stall_amps: f64,
     recent: VecDeque<Point>,
     /// Duties read and when, oldest first.
     readings: VecDeque<(f64, f64)>,
@@ -268,6 +272,7 @@ impl MotorMonitor {
             return Ok(());
         }
         self.check_current(point)?;
+        self.learn_stall(point);
         self.learn_start(point);
         self.check_start(point)?;
         if self.in_loop
@@ -438,6 +443,22 @@ impl MotorMonitor {
         // Friction stops a motor, but does not turn it.
         let stops = speed > 0.0 && next < 0.0 && gain * duty >= -friction;
         if stops { 0.0 } else { next }
+    }
+
+    /// Remembers what a motor drew that gathered speed. One that is braked, or still goes the other way, may draw more than a standing one.
+    fn learn_stall(&mut self, point: &Point) {
+        let (Some(amps), Some(given)) = (point.amps, self.duties.back()) else { return };
+        let Some(before) = self.recent.iter().rev().nth(1) else { return };
+        let gathers = self.rising && (point.counts - before.counts) * given.1 > 0.0;
+        if !self.in_loop && gathers && given.1.abs() >= MONITOR.telling_duty {
+            let clear = amps.abs() - self.no_current_amps();
+            self.least_stall_amps = self.least_stall_amps.max(clear / given.1.abs());
+        }
+    }
+
+    /// Amperes at full duty with the shaft at rest at the least, where the probe could not tell what they are; `None` where nothing told.
+    pub(crate) fn least_stall_amps(&self) -> Option<f64> {
+        Some(self.least_stall_amps).filter(|least| *least > 0.0)
     }
 
     fn learn_start(&mut self, point: &Point) {
@@ -647,6 +668,12 @@ impl MotorMonitor {
     fn slewed(&self, duty: f64, goal: f64, seconds: f64) -> f64 {
         let most = self.slew_per_s() * seconds.max(0.0);
         if most.is_finite() && !self.is_abrupt { duty + (goal - duty).clamp(-most, most) } else { goal }
+    }
+
+    /// Duties that friction and the load take from a motor whose model is known; 0 before.
+    pub(crate) fn opposing(&self) -> (f64, f64) {
+        let known = self.closed_loop.as_ref().map(ClosedLoopMonitor::model);
+        known.map_or((0.0, 0.0), |model| (model.coulomb_duty, model.load_duty))
     }
 
     /// Speed per duty without any load, counts/s, and the time constant, as far as they are known.

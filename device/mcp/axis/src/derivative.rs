@@ -19,9 +19,10 @@ const CREEP_DUTY: f64 = 0.04;
 /// times too small so, and its loop called tuned at a true Ms of 3.4.
 const ENOUGH_PULSES: f64 = 12.0;
 const MOST_CREEP_DUTY: f64 = 0.3;
-/// How long it creeps, at the most where few counts came, and from when on readings count, s: the motor has to have gathered its speed.
+/// How long it creeps, at the most where few counts came, how long where it does not move at all, and from when on readings count, s: the motor has to have gathered its speed.
 const CREEP_S: f64 = 0.4;
 const LONGEST_CREEP_S: f64 = 1.5;
+const UNMOVED_S: f64 = 0.25;
 const SETTLED_S: f64 = 0.1;
 /// The target lies so many times as far away as the motor creeps, and how far that is on an axis that turns freely, counts.
 const FAR: f64 = 8.0;
@@ -377,8 +378,16 @@ impl Creep {
                 settled_at.get_or_insert(point.counts);
             }
             let is_far = |from: f64, far: f64| point.is_some_and(|point| (point.counts - from).abs() > far);
-            let is_told = settled_at.is_some_and(|settled_at| is_far(settled_at, enough));
-            if is_far(from, self.counts) || crept_s > if is_told { CREEP_S } else { LONGEST_CREEP_S } {
+            // One that has hardly moved will tell no more.
+            let is_told = !is_far(from, LEAST_COUNTS)
+                || settled_at.is_some_and(|settled_at| is_far(settled_at, enough));
+            let has_moved = point.is_none() || is_far(from, 0.5);
+            let most_s = match (has_moved, is_told) {
+                (false, _) => UNMOVED_S,
+                (true, true) => CREEP_S,
+                (true, false) => LONGEST_CREEP_S,
+            };
+            if is_far(from, self.counts) || crept_s > most_s {
                 break;
             }
         }
