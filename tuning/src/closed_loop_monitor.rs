@@ -180,12 +180,13 @@ impl ClosedLoopMonitor {
         &self.model
     }
 
-    /// The least that friction takes off the speed of an open motor in a time; `None` where a load pulls that could keep it going.
+    /// The least that friction takes off the speed of an open motor in a time; `None` where a load pulls that could keep it going. Without a current nothing but friction
+    /// slows it down, as much at any speed.
     pub(crate) fn least_fall(&self, seconds: f64) -> Option<f64> {
         let model = &self.model;
         let is_helped = model.load_duty.abs() > CLOSED_LOOP.helping * model.coulomb_duty;
-        let share = (seconds / (CLOSED_LOOP.tau_spread.1 * model.tau_s)).min(1.0);
-        (!is_helped).then_some(CLOSED_LOOP.friction.0 * model.gain_counts_per_s * model.coulomb_duty * share)
+        let taus = seconds / (CLOSED_LOOP.tau_spread.1 * model.tau_s);
+        (!is_helped).then_some(CLOSED_LOOP.friction.0 * model.gain_counts_per_s * model.coulomb_duty * taus)
     }
 
     /// Whether the counts of every stretch lie within their bounds.

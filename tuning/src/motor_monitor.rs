@@ -590,15 +590,14 @@ impl MotorMonitor {
         };
         let polls: Vec<&Point> =
             self.recent.iter().filter(|point| point.t >= since_s - MONITOR.speed_s).collect();
-        let mut beyond: Vec<f64> = polls
-            .windows(2)
-            .filter(|pair| pair[1].amps.is_some())
-            .map(|pair| {
-                let speed = (pair[1].counts - pair[0].counts) / (pair[1].t - pair[0].t).max(1e-3);
-                let duty = pair[1]
-                    .duty
-                    .filter(|_| self.in_loop)
-                    .map_or_else(|| self.duty_at(pair[1].t), |read| read.1);
+        // Two polls see a tick's counts more or less, which at a coarse encoder are more than a friction.
+        let mut beyond: Vec<f64> = (1..polls.len())
+            .filter(|n| polls[*n].amps.is_some())
+            .map(|n| {
+                let (from, to) = (polls[n.saturating_sub(2)], polls[(n + 1).min(polls.len() - 1)]);
+                let speed = (to.counts - from.counts) / (to.t - from.t).max(1e-3);
+                let read = polls[n].duty.filter(|_| self.in_loop);
+                let duty = read.map_or_else(|| self.duty_at(polls[n].t), |read| read.1);
                 duty.abs() - speed * duty.signum() / gain
             })
             .collect();

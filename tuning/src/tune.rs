@@ -35,6 +35,8 @@ thresholds! {
         worst_chi_square: f64 = 12.0,
         /// Loosest time constant of a fit that is believed, as the standard deviation of its logarithm, of a motor slower than four polls.
         loosest_tau: f64 = 0.5,
+        /// How often in a second a loop of unknown rate may compute, in Hz: a count in a shorter tick makes more duty.
+        highest_rate_hz: f64 = 1_000.0,
         /// Duty by which a load is above the friction before it is called heavy, as a share of full.
         surely_heavy: f64 = 0.005,
         /// Misfit of the closed loop (reduced chi-square) beyond which the model is taken as incomplete.
@@ -363,6 +365,7 @@ fn with_law<L: LawProbe>(
     let law = request.law.found(&findings, position).ok_or_else(|| L::why_not_found(&findings))?;
     if !L::is_rate_known(&findings) {
         report.causes.push(Cause::RateUnknown);
+        guard.rate_doubt = (TUNE.highest_rate_hz / f64::from(law.rate_hz())).max(1.0);
     }
     if matches!(request.method, Method::Pd | Method::Pid) && !L::is_derivative_known(&findings) {
         report.causes.push(Cause::DerivativeUnknown);

@@ -140,7 +140,7 @@ impl<L: Law> ExperimentGuard<'_, L> {
     pub fn write(&mut self, write: L::Write) -> Result<(), Cause> {
         self.gains_touched = true;
         L::take(&mut self.registers, &write);
-        self.monitor.hold(self.law.step_duty(&self.registers));
+        self.monitor.hold(self.rate_doubt * self.law.step_duty(&self.registers));
         if self.facts.writes_at_rest {
             self.pause();
             return retried(|| self.axis.write(write));

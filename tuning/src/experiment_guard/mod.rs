@@ -95,6 +95,8 @@ pub struct ExperimentGuard<'a, L: Law> {
     pub setup: Setup<L>,
     /// Its law, as far as it is known.
     pub(crate) law: L,
+    /// How many times more often than that law says the loop may compute.
+    pub(crate) rate_doubt: f64,
     /// Properties of that.
     pub(crate) facts: &'static Facts,
     /// Every poll.
@@ -152,6 +154,7 @@ impl<'a, L: Law> ExperimentGuard<'a, L> {
             options,
             setup,
             law,
+            rate_doubt: 1.0,
             facts: law.facts(),
             points: Vec::new(),
             exchanges: Vec::new(),

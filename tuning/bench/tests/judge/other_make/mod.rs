@@ -295,7 +295,8 @@ fn position_loops_of_another_make_keep_the_margin_that_they_promise() {
 }
 
 /// Each of these was called jammed: friction that falls with the speed holds a motor below a duty at which a model of one friction says that it turns, counts that a loop of 200 Hz
-/// samples are up to 5 ms old, and a loop that pulsed its derivative leaves the motor with a duty that no poll saw.
+/// samples are up to 5 ms old, and a loop that pulsed its derivative leaves the motor with a duty that no poll saw. The last three were called flipped or open: polls in step
+/// with the pulses that a coarse encoder makes of a loop's duty see the lower half of it, and of its current.
 #[test]
 fn a_motor_that_nothing_stops_is_not_called_jammed() {
     let known = [
@@ -307,6 +308,9 @@ fn a_motor_that_nothing_stops_is_not_called_jammed() {
         (1_002, 29, Method::Piv),
         (1_005, 83, Method::Pid),
         (1_005, 34, Method::Pd),
+        (1_024, 10, Method::Velocity),
+        (1_026, 46, Method::Piv),
+        (1_028, 13, Method::Velocity),
     ];
     for (seed, number, method) in known {
         let run = Run::with(seed, number, method, |_| {});
