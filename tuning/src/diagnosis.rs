@@ -100,7 +100,7 @@ pub(crate) fn diagnose(monitor: &MotorMonitor, alarm_s: f64, after: &[Point]) ->
     if !alive {
         let turns = match stall {
             Some(stall) => turns_unseen(monitor, stall, &moments, alarm_s),
-            None => turns_unseen_at_all(monitor, &polls, alarm_s),
+            None => draws_as_turning(monitor, &polls, alarm_s),
         };
         return if turns { Cause::EncoderLost } else { Cause::Stalled };
     }
@@ -208,19 +208,6 @@ fn outruns(moments: &[Moment], gain: f64, load_duty: f64, alarm_s: f64) -> bool 
         && against > DIAGNOSIS.outrun * with + DIAGNOSIS.least_outrun * gain
 }
 
-/// The same where the current of a standing motor is not known. That of one that stands goes down with its duty, and what brakes a turning one grows; and it stands with
-/// more than it ever drew while it gathered speed.
-fn turns_unseen_at_all(monitor: &MotorMonitor, polls: &[Point], alarm_s: f64) -> bool {
-    let amps = |point: &Point| point.amps.map(f64::abs);
-    let driven =
-        polls.iter().filter(|point| point.t < alarm_s).filter_map(|point| Some((point.t, amps(point)?)));
-    let Some((t, driven)) = driven.last() else { return false };
-    let braked = polls.iter().filter(|point| point.t > alarm_s).filter_map(amps).fold(0.0, f64::max);
-    let least = monitor.least_stall_amps().map_or(0.0, |stall| stall * monitor.duty_at(t).abs());
-    braked > DIAGNOSIS.grown * driven + monitor.no_current_amps()
-        || least > DIAGNOSIS.telling_amps && driven < (1.0 - DIAGNOSIS.short) * least
-}
-
 /// Whether currents are other than those of a motor that stands, while nothing is counted.
 fn turns_unseen(monitor: &MotorMonitor, stall: f64, moments: &[Moment], alarm_s: f64) -> bool {
     let limit = limit_of(monitor);
@@ -256,6 +243,19 @@ fn turns_unseen(monitor: &MotorMonitor, stall: f64, moments: &[Moment], alarm_s:
     driven_off
         || first > DIAGNOSIS.braked_share
         || least > (2.0 * monitor.no_current_amps() / stall).max(DIAGNOSIS.least_braked)
+}
+
+/// The same where the current of a standing motor is not known. That goes down with the duty, and what brakes a turning motor grows; and it is more than the motor ever
+/// drew while it gathered speed.
+fn draws_as_turning(monitor: &MotorMonitor, polls: &[Point], alarm_s: f64) -> bool {
+    let amps = |point: &Point| point.amps.map(f64::abs);
+    let mut driven =
+        polls.iter().filter(|point| point.t < alarm_s).filter_map(|point| Some((point.t, amps(point)?)));
+    let Some((t, driven)) = driven.next_back() else { return false };
+    let braked = polls.iter().filter(|point| point.t > alarm_s).filter_map(amps).fold(0.0, f64::max);
+    let least = monitor.least_stall_amps().map_or(0.0, |stall| stall * monitor.duty_at(t).abs());
+    braked > DIAGNOSIS.grown * driven + monitor.no_current_amps()
+        || least > DIAGNOSIS.telling_amps && driven < (1.0 - DIAGNOSIS.short) * least
 }
 
 /// What may have happened, held against the currents.

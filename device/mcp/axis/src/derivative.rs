@@ -371,16 +371,18 @@ impl Creep {
         guard.position(target, QPPS as u32)?;
         let (start_s, first) = (guard.now_s(), guard.points.len());
         let mut settled_at = None;
+        let mut readings = 0;
         loop {
             let point = guard.poll(true)?;
             let crept_s = guard.now_s() - start_s;
             if let Some(point) = point.filter(|_| crept_s > SETTLED_S) {
                 settled_at.get_or_insert(point.counts);
+                readings += usize::from(point.duty.is_some());
             }
             let is_far = |from: f64, far: f64| point.is_some_and(|point| (point.counts - from).abs() > far);
             // One that has hardly moved will tell no more.
             let is_told = !is_far(from, LEAST_COUNTS)
-                || settled_at.is_some_and(|settled_at| is_far(settled_at, enough));
+                || readings >= LEAST_READINGS && settled_at.is_some_and(|from| is_far(from, enough));
             let has_moved = point.is_none() || is_far(from, 0.5);
             let most_s = match (has_moved, is_told) {
                 (false, _) => UNMOVED_S,
