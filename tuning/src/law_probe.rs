@@ -118,9 +118,10 @@ fn creep<L: Law>(
     guard.duty(duty)?;
     let began_s = guard.now_s();
     let until_s = began_s + LAW_PROBE.reading_s;
+    let mut far = 0.0;
     while guard.now_s() < until_s && speeds.len() < enough {
-        let point = guard.poll(false)?;
-        let far = point.map_or(0.0, |point| (point.counts - from).abs());
+        // A lost reply says nothing of where it is.
+        far = guard.poll(false)?.map_or(far, |point| (point.counts - from).abs());
         // One that does not move tells nothing, and is not driven for longer: a loop that has it soon shows why.
         if far > counts || far < 1.0 && guard.now_s() > began_s + LAW_PROBE.unmoved_s {
             break;

@@ -370,26 +370,26 @@ impl Creep {
         guard.set(McpWrite::PositionLoop(registers))?;
         guard.position(target, QPPS as u32)?;
         let (start_s, first) = (guard.now_s(), guard.points.len());
-        let mut settled_at = None;
-        let mut readings = 0;
+        let (mut here, mut settled_at, mut readings) = (from, None, 0);
         loop {
             let point = guard.poll(true)?;
             let crept_s = guard.now_s() - start_s;
+            // A lost reply says nothing of where it is.
+            here = point.map_or(here, |point| point.counts);
             if let Some(point) = point.filter(|_| crept_s > SETTLED_S) {
                 settled_at.get_or_insert(point.counts);
                 readings += usize::from(point.duty.is_some());
             }
-            let is_far = |from: f64, far: f64| point.is_some_and(|point| (point.counts - from).abs() > far);
-            // One that has hardly moved will tell no more.
-            let is_told = !is_far(from, LEAST_COUNTS)
-                || readings >= LEAST_READINGS && settled_at.is_some_and(|from| is_far(from, enough));
-            let has_moved = point.is_none() || is_far(from, 0.5);
-            let most_s = match (has_moved, is_told) {
-                (false, _) => UNMOVED_S,
-                (true, true) => CREEP_S,
-                (true, false) => LONGEST_CREEP_S,
+            let came = (here - from).abs();
+            let is_told = readings >= LEAST_READINGS
+                && settled_at.is_some_and(|settled_at: f64| (here - settled_at).abs() > enough);
+            let most_s = match came {
+                none if none < 1.0 => UNMOVED_S,
+                // One that has hardly moved will tell no more.
+                few if few <= LEAST_COUNTS || is_told => CREEP_S,
+                _ => LONGEST_CREEP_S,
             };
-            if is_far(from, self.counts) || crept_s > most_s {
+            if came > self.counts || crept_s > most_s {
                 break;
             }
         }
