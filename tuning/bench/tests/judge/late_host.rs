@@ -294,20 +294,38 @@ fn a_stretch_over_a_line_that_stood_still_is_done_again_and_gives_gains() {
     }
 }
 
-/// A run that has no time left for another try keeps what it has, with a mark.
+/// A run that has no time left for another try keeps what it has, with a mark; so does one whose other try the limit cuts short.
 #[test]
-fn a_stretch_is_not_done_again_beyond_the_time_limit() {
+fn what_was_found_stays_where_the_time_limit_leaves_no_other_try() {
     let plant = specimen(31, 0);
-    let mut request = request_of(&plant, Method::Velocity);
-    let quiet = tune(&mut Unit::axis(&plant), &request).seconds.1;
-    request.guard.time_limit_s = 1.2 * quiet;
-    let mut axis = <ControlLaw as Unit>::axis(&plant);
-    let from = axis.now() + Duration::from_secs_f64(quiet - 0.3);
-    axis.carrier.stalls = vec![(from, Duration::from_millis(150))];
-    let report = tune(&mut axis, &request);
-    assert_ne!(report.verdict, Verdict::Refused, "{:?}", report.causes);
-    let is_marked = report.causes.iter().any(|cause| matches!(cause, Cause::TakenLate { .. }));
-    assert!(is_marked, "{:?}", report.causes);
+    // The computer stands still shortly before the end of a try.
+    let run = |limit_s: f64, tries_end_s: &[f64]| {
+        let mut request = request_of(&plant, Method::Velocity);
+        request.guard.time_limit_s = limit_s;
+        let mut axis = <ControlLaw as Unit>::axis(&plant);
+        let start = axis.now();
+        let stall = |end_s: &f64| (start + Duration::from_secs_f64(end_s - 0.3), Duration::from_millis(150));
+        axis.carrier.stalls = tries_end_s.iter().map(stall).collect();
+        let report = tune(&mut axis, &request);
+        println!("{limit_s:.2} s: {:?} {:?} {:?}", report.verdict, report.causes, report.seconds);
+        assert!(report.replay().as_ref() == Some(&report), "{limit_s:.2} s: the replay differs");
+        report
+    };
+    let is_marked = |report: &Report<McpLaw>| {
+        let is_late = |cause: &Cause| matches!(cause, Cause::TakenLate { .. });
+        report.verdict == Verdict::TunedWithWarnings && report.causes.iter().any(is_late)
+    };
+    let (identified_s, quiet_s) = run(180.0, &[]).seconds;
+    let late = run(1.2 * quiet_s, &[quiet_s]);
+    assert!(is_marked(&late), "{:?}", late.causes);
+    // Another try of the same length is begun within the limit or not, and ends within it or not, by a few milliseconds.
+    let as_long_s = 2.0 * late.seconds.1 - identified_s;
+    let limits_s = (0..20).map(|n| as_long_s + 0.005 * f64::from(n));
+    let mut runs = limits_s.map(|limit_s| (limit_s, run(limit_s, &[limit_s, quiet_s])));
+    let cut = runs.find(|(limit_s, report)| report.seconds.1 > *limit_s);
+    let (_, cut) = cut.expect("another try that is begun and cut short");
+    assert!(is_marked(&cut), "{:?}", cut.causes);
+    assert_eq!(cut.proposed, late.proposed, "what the first try found");
 }
 
 /// A fault that comes after a late gap is seen in a stretch that is done again for the gap's sake. What the second try tells, in time, is the machine's.
