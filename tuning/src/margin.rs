@@ -302,13 +302,18 @@ impl<'t, L: Law> Raised<'t, L> {
         if let Some(about) = self.about.filter(|_| self.part == Part::DerivativeByPositions) {
             return guard.position(about + self.side * self.far, self.task.qpps as u32);
         }
-        guard.speed(if self.side > 0.0 { self.speeds.1 } else { self.speeds.0 })
+        guard.speed(self.told())
     }
 
-    /// Whether a motor that goes to and fro turns about as it was told to.
+    /// The speed that the motor was given, counts/s.
+    fn told(&self) -> f64 {
+        if self.side > 0.0 { self.speeds.1 } else { self.speeds.0 }
+    }
+
+    /// Whether the motor turns about as it was told to.
     fn turns(&self, guard: &ExperimentGuard<'_, L>) -> bool {
         let (low, high) = MARGIN.turning;
-        let told = self.side * self.speeds.1;
+        let told = self.told();
         let latest = &guard.points[guard.points.len().saturating_sub(MARGIN.turning_polls + 1)..];
         let mut shares = latest
             .windows(2)
@@ -326,9 +331,7 @@ impl<'t, L: Law> Raised<'t, L> {
         let from_s = guard.now_s() + (1.0 - MARGIN.heard) * self.tried_s;
         match guard.poll_for(self.tried_s, true) {
             // Its duty, which swings quicker than polls see, does not explain its speed. The speed is the one that it was given.
-            Err(Cause::Stalled) if self.part == Part::DerivativeByPositions && self.turns(guard) => {
-                return Ok(f64::INFINITY);
-            }
+            Err(Cause::Stalled) if self.turns(guard) => return Ok(f64::INFINITY),
             polled => polled?,
         }
         let duties: Vec<(f64, f64)> =

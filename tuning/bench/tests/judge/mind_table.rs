@@ -81,6 +81,18 @@ fn the_lag_of_a_coarse_encoder_is_not_what_rounding_does_to_the_duty() {
     }
 }
 
+/// A steering gear on a line of text, polled every 35 ms: its raised gains rattle in the backlash, and the duties that polls happen to read would have stopped it. It was called stalled
+/// while it turned as it was told to.
+#[test]
+fn a_duty_that_swings_between_slow_polls_is_rough_and_no_jam() {
+    let plant = specimen(11, 126);
+    for method in [Method::Pd, Method::Pid] {
+        let (report, _) = tune_plant(&plant, &request_of(&plant, method));
+        assert_eq!(report.verdict, Verdict::TunedWithWarnings, "{method:?}: {:?}", report.causes);
+        assert!(report.causes.contains(&Cause::BackedOff), "{method:?}: {:?}", report.causes);
+    }
+}
+
 /// These were called tuned at a true Ms of 1.83 to 3.46 while no gain was raised on this family, since its registers are written at rest only.
 #[test]
 fn springy_shafts_are_never_called_tuned_beyond_the_margin() {
