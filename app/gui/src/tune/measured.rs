@@ -8,6 +8,9 @@ use brushwork_tuning::trace::Stretch;
 const SPEED_BAND: f64 = 0.05;
 const PLACE_BAND: f64 = 0.02;
 const ROUNDING_COUNTS: f64 = 3.0;
+/// Values of a speed to either side of one that have to leave the band with it, on the whole: a count is up to a tick old when it is read, and a single one that is makes
+/// two speeds wrong, which a motor that settled does not.
+const BESIDE: usize = 2;
 
 /// What the steps of a stretch amount to.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -65,7 +68,9 @@ pub fn figures(trace: &Trace, stretch: &Stretch, values: &[(f64, f64)], rounding
         } else {
             SPEED_BAND * way.abs() + rounding
         };
-        let last_outside = inside.iter().rposition(|(_, value)| (value - step.goal).abs() > band);
+        let beside = if stretch.is_position { 0 } else { BESIDE };
+        let last_outside =
+            (0..inside.len()).rposition(|n| (about(&inside, n, beside) - step.goal).abs() > band);
         settled.push(match last_outside {
             None => 0.0,
             Some(index) => inside.get(index + 1).map_or(f64::INFINITY, |(t, _)| t - step.from_s),
@@ -73,6 +78,13 @@ pub fn figures(trace: &Trace, stretch: &Stretch, values: &[(f64, f64)], rounding
     }
     let overshoot = median(overs)?;
     Some(Figures { overshoot, settling_s: median(settled).filter(|s| s.is_finite()) })
+}
+
+/// The median of a value and so many to either side of it.
+fn about(values: &[(f64, f64)], index: usize, beside: usize) -> f64 {
+    let to = values.len().min(index + beside + 1);
+    let around = values.get(index.saturating_sub(beside)..to).unwrap_or_default();
+    median(around.iter().map(|(_, value)| *value).collect()).unwrap_or_default()
 }
 
 fn median(mut values: Vec<f64>) -> Option<f64> {
@@ -85,6 +97,28 @@ mod tests {
     use super::*;
     use brushwork_tuning::axis::EncoderClass;
     use brushwork_tuning::experiment_guard::Drive;
+
+    #[test]
+    fn a_count_that_was_old_when_it_was_read_does_not_make_a_settled_speed_unsettled() {
+        let mut trace = Trace::new(0, EncoderClass::Quadrature);
+        for (t, speed) in [(0.0, 1000.0), (1.0, 2000.0)] {
+            trace.drives.push(Drive { t, input: Input::Speed(speed) });
+        }
+        let stretch = Stretch { from_s: 0.0, to_s: 2.0, is_position: false };
+        let settled_after = |outside: &[i32]| {
+            let value = |n: i32| match n {
+                0..100 => 1000.0,
+                100..130 => 2200.0,
+                _ if outside.contains(&n) => 2400.0,
+                _ => 2000.0,
+            };
+            let values: Vec<(f64, f64)> = (0..200).map(|n| (f64::from(n) * 0.01, value(n))).collect();
+            figures(&trace, &stretch, &values, 0.0).unwrap().settling_s.unwrap()
+        };
+        assert!((settled_after(&[]) - 0.3).abs() < 0.011);
+        assert!((settled_after(&[160, 161]) - 0.3).abs() < 0.011, "one old count");
+        assert!(settled_after(&[160, 161, 162, 163]) > 0.6, "a speed that does leave its band");
+    }
 
     #[test]
     fn the_median_of_the_steps_counts_and_the_first_from_rest_does_not() {

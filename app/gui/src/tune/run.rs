@@ -11,7 +11,7 @@ use brushwork_tuning::load_change::LoadChange;
 use brushwork_tuning::model::Gains;
 use brushwork_tuning::promise::Promise;
 use brushwork_tuning::registers::RegisterTable as _;
-use brushwork_tuning::report::Verdict;
+use brushwork_tuning::report::{Measured, Verdict};
 use brushwork_tuning::trace::{Predicted, Stretch};
 use brushwork_tuning::trial::on_model;
 use brushwork_tuning::whatif::{Forecast, LoopPoint, forecast, frequency_response, redesign_registers};
@@ -97,9 +97,7 @@ impl Run {
         let trace = Trace::of(motor, &report.record);
         let seen = (report.verdict == Verdict::Refused).then(|| trace.clone());
         let first = proposed(&report);
-        let measured = report.measured;
-        let rms = measured.and_then(|m| (m.duty_rms > 0.0).then_some(m.duty_rms));
-        let tried = tried(trace, rms, &report);
+        let tried = tried(trace, report.measured, &report);
         let mut run = Self {
             number,
             interrupted: None,
@@ -215,8 +213,7 @@ impl Run {
     pub fn was_tried(&mut self, trial: &Trial) {
         self.verified = Some(trial.cause.map_or(Ok(()), Err));
         let trace = Trace::of(self.report.request.guard.motor, &trial.record);
-        let rms = trial.measured.map(|measured| measured.duty_rms).filter(|rms| *rms > 0.0);
-        if let Some(tried) = tried(trace, rms, &self.report) {
+        if let Some(tried) = tried(trace, trial.measured, &self.report) {
             self.tried = Some(tried);
         }
         self.predict_considered();
@@ -240,7 +237,7 @@ fn considered(report: &Report, registers: &AnyRegisters) -> Option<(Task, Gains)
 }
 
 /// The last stretch in which a loop held the motor, and with which gains.
-fn tried(trace: Trace, duty_rms: Option<f64>, report: &Report) -> Option<Tried> {
+fn tried(trace: Trace, measured: Option<Measured>, report: &Report) -> Option<Tried> {
     let stretch = *trace.stretches().last()?;
     let before = report.before.unwrap_or_default();
     let mut registers = AnyLaw::before(&before.held);
@@ -253,14 +250,20 @@ fn tried(trace: Trace, duty_rms: Option<f64>, report: &Report) -> Option<Tried> 
     let values = |place: f64, speed: f64| if stretch.is_position { place } else { speed };
     let with = considered(report, &registers);
     let predicted = with.map(|(task, gains)| trace.predict(&task, &gains, &stretch)).unwrap_or_default();
-    let (measured, rounding) = if stretch.is_position {
+    let (seen, rounding) = if stretch.is_position {
         (trace.points.iter().map(|point| (point.t, point.counts)).collect(), 1.0)
     } else {
         (trace.speeds(SPEED_OVER_S), 1.0 / SPEED_OVER_S)
     };
     let course: Vec<(f64, f64)> = predicted.iter().map(|p| (p.t, values(p.counts, p.speed))).collect();
-    let figures = measured::figures(&trace, &stretch, &measured, rounding);
+    let mut figures = measured::figures(&trace, &stretch, &seen, rounding);
     let promised = measured::figures(&trace, &stretch, &course, 0.0);
+    // Its flanks laid over each other see a speed go past its setpoint better than each by itself.
+    let overshoot = measured.map(|measured| measured.overshoot).filter(|over| *over > 0.0);
+    if let (Some(figures), Some(overshoot)) = (figures.as_mut(), overshoot.filter(|_| !stretch.is_position)) {
+        figures.overshoot = overshoot;
+    }
+    let duty_rms = measured.map(|measured| measured.duty_rms).filter(|rms| *rms > 0.0);
     let considered = Vec::new();
     Some(Tried { trace, stretch, registers, predicted, considered, figures, promised, duty_rms })
 }
