@@ -371,21 +371,24 @@ impl MotorMonitor {
         Ok(())
     }
 
-    /// Whether the motor is off and all that is counted is slow: a load sways in the backlash of its gear, or takes the motor along a little.
+    /// Whether the motor is off and all that is counted is slow: a load sways in the backlash of its gear, or takes the motor along a little. A duty that is given
+    /// afterwards has stretches of its own later.
     fn sways(&self, stretch: &Stretch) -> bool {
         let Stretch { from, to, speed_before } = stretch;
-        // A duty that is younger than the shortest stretch has stretches of its own later.
+        // One that is younger than the shortest stretch too.
         let old_s = to.t - MONITOR.stretches_s[0];
-        let later = || self.duties.iter().filter(|given| given.0 > from.t && given.0 < old_s);
+        let driven = self.duties.iter().find(|given| given.0 > from.t && given.0 < old_s && given.1 != 0.0);
+        let before = |given: &(f64, f64)| self.recent.iter().rev().find(|old| old.t <= given.0);
+        let (to, least) = driven.and_then(before).map_or((to, 0.0), |old| (old, MONITOR.margin_counts));
         let goal = self.duties.iter().rev().find(|given| given.0 <= from.t);
         // Not only once the ramp to nought is over: a load that was braked swings back before.
         let off = !self.in_loop
             && self.loop_until_s < from.t - MONITOR.speed_s
-            && goal.into_iter().chain(later()).all(|given| given.1 == 0.0);
+            && goal.is_none_or(|given| given.1 == 0.0);
         let moved = to.counts - from.counts;
         let carried = MONITOR.carried * (self.speed_when_off() * moved.signum()).max(0.0);
         let slow = carried.max(MONITOR.swaying * self.gain);
-        off && speed_before.abs() < slow && moved.abs() < slow * (to.t - from.t)
+        off && speed_before.abs() < slow && moved.abs() >= least && moved.abs() < slow * (to.t - from.t)
     }
 
     /// The speed that it had when its duty was taken away, counts/s; 0 where nobody remembers.
@@ -727,6 +730,36 @@ mod tests {
     fn a_braked_load_that_swings_back_while_the_duty_still_ramps_down_is_no_fault() {
         assert_eq!(seen_swinging(1.0), Ok(()));
         assert_eq!(seen_swinging(40.0), Err(Cause::Stalled), "no load swings back that fast");
+    }
+
+    /// A motor that was braked swings back through the backlash of its gear, by `scale` times 38 counts, and stands; then a little duty takes it on the same way.
+    fn seen_driven_after_swinging(scale: f64, driven: f64) -> Result<(), Cause> {
+        let mut monitor = knowing(0.04, 21_130.0);
+        monitor.drive(0.0, 0.0);
+        monitor.drive(0.164, -0.29);
+        monitor.drive(0.194, 0.0);
+        monitor.drive(0.355, -0.06);
+        let counts =
+            [20.0, 32.0, 36.0, 37.0, 37.0, 26.0, 16.0, 10.0, 6.0, 4.0, 2.0, 2.0, 2.0, 2.0, 1.0, -1.0, -1.0];
+        let on = [0.0, -2.0, -7.0, -13.0, -20.0, -28.0];
+        let swung = counts.map(|counts| scale * counts);
+        let rest = swung[counts.len() - 1];
+        swung.into_iter().chain(on.map(|counts| rest + driven * counts)).enumerate().try_for_each(
+            |(n, counts)| {
+                let t = 0.203 + 0.01 * n as f64;
+                monitor.see(&Point { t, counts, duty: None, amps: None, volts: None, limited: false })
+            },
+        )
+    }
+
+    #[test]
+    fn a_load_that_swung_back_before_a_duty_was_given_is_not_held_against_it() {
+        assert_eq!(seen_driven_after_swinging(1.4, 1.0), Ok(()));
+        assert_eq!(
+            seen_driven_after_swinging(1.4, 12.0),
+            Err(Cause::Stalled),
+            "nothing goes so fast at that duty"
+        );
     }
 
     /// A motor at 1,020 counts/s of 3,800 is braked and stands; then its load takes it along at so many counts/s.
