@@ -330,8 +330,10 @@ impl<'t, L: Law> Raised<'t, L> {
         self.go(guard)?;
         let from_s = guard.now_s() + (1.0 - MARGIN.heard) * self.tried_s;
         match guard.poll_for(self.tried_s, true) {
-            // Its duty, which swings quicker than polls see, does not explain its speed. The speed is the one that it was given.
-            Err(Cause::Stalled) if self.turns(guard) => return Ok(f64::INFINITY),
+            // Its duty, which swings quicker than polls see, does not explain its speed. The speed is the one that it was given, and no answer was late.
+            Err(Cause::Stalled) if self.turns(guard) && guard.late_for(Cause::Stalled).is_none() => {
+                return Ok(f64::INFINITY);
+            }
             polled => polled?,
         }
         let duties: Vec<(f64, f64)> =

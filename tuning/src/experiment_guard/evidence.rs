@@ -30,20 +30,11 @@ impl<L: Law> ExperimentGuard<'_, L> {
         if !self.options.weighs_evidence || !self.facts.has_duty {
             return cause;
         }
-        let took_s: Vec<f64> =
-            self.exchanges[self.stretch_from..].iter().map(|exchange| exchange.1).collect();
         // Answers on time that tell the same as late ones did before are to be believed: the motor was brought to rest in between, and what had struck was there from
         // the start then.
         let seen_before = self.kept_cause.filter(|kept| *kept == cause || kept.at_the_start() == Some(cause));
         let kept = self.kept_late.filter(|_| seen_before.is_none());
-        let now_s = self.axis.now().as_secs_f64();
-        // What struck in mid-run was told by the last polls.
-        let late = if cause.at_the_start().is_some() {
-            self.pace.late_gap_before(now_s)
-        } else {
-            self.pace.late_gap()
-        };
-        let late = late.or_else(|| self.pace.unsteady(&took_s)).or(kept).filter(|_| cause.is_of_motion());
+        let late = self.late_for(cause).or(kept).filter(|_| cause.is_of_motion());
         if let Some(late) = late {
             return self.answered_late(late);
         }
@@ -51,6 +42,20 @@ impl<L: Law> ExperimentGuard<'_, L> {
         // An open motor is named by a current that was clear before, and is none now.
         let by_latest = cause.is_by_current() && cause != Cause::MotorOpened;
         if by_latest && self.is_current_unclear() { Cause::CurrentUnclear } else { cause }
+    }
+
+    /// What of the answers of this stretch was too late to conclude a cause from them.
+    pub(crate) fn late_for(&mut self, cause: Cause) -> Option<Late> {
+        let now_s = self.axis.now().as_secs_f64();
+        let took_s: Vec<f64> =
+            self.exchanges[self.stretch_from..].iter().map(|exchange| exchange.1).collect();
+        // What struck in mid-run was told by the last polls.
+        let late = if cause.at_the_start().is_some() {
+            self.pace.late_gap_before(now_s)
+        } else {
+            self.pace.late_gap()
+        };
+        late.or_else(|| self.pace.unsteady(&took_s))
     }
 
     pub(super) fn answered_late(&self, late: Late) -> Cause {
