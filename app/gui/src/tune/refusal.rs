@@ -79,10 +79,9 @@ fn steps(cause: Cause) -> &'static [&'static str] {
             "Tune it by hand with the assistant below, which needs to know nothing of the loop's law.",
             "Save the report: it holds what the controller answered.",
         ],
-        Cause::NoDirectLoop => &[
-            "Tune the speed first, on the Velocity screen.",
-            "Then choose the method PIV above and try again.",
-        ],
+        Cause::NoDirectLoop => {
+            &["Choose the method PIV above and try again: it tunes the velocity loop under the position too."]
+        }
         Cause::EncoderDead | Cause::EncoderLost => &[
             "Look at the encoder's plug at both ends, and at its 5 V supply.",
             "Turn the shaft by hand: the encoder figure at the top must change.",

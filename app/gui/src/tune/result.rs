@@ -60,12 +60,12 @@ fn empty_ui(ui: &mut Ui, model: &Model, which: Loop) {
     let has_duty = model.front.family().lacks(Ability::Duty).is_none();
     let text = match which {
         Loop::Position if !has_duty => {
-            "Not tuned yet.\n\n1. Choose the method. PID holds against a load; PD is the simplest.\n2. Choose Turns freely; for an axis with \
-             end stops choose Within and give its travel.\n3. Arm this screen and press Tune."
+            "Not tuned yet.\n\n1. Choose the method. PID holds against a load; PD is the simplest.\n2. Say how far the axis may go: if it \
+             has end stops, choose Within and give its travel.\n3. Arm this screen and press Tune."
         }
         Loop::Position if !has_piv => {
-            "Not tuned yet.\n\n1. Choose the method. PID holds against a load; PD is the simplest.\n2. Choose Turns freely; for an axis with \
-             end stops choose Within and give its travel.\n3. Arm this screen and press Tune.\n\nThere is one set of registers: gains for positions are \
+            "Not tuned yet.\n\n1. Choose the method. PID holds against a load; PD is the simplest.\n2. Say how far the axis may go: if it \
+             has end stops, choose Within and give its travel.\n3. Arm this screen and press Tune.\n\nThere is one set of registers: gains for positions are \
              those of velocities too. Tune last what you use."
         }
         Loop::Velocity => {
@@ -73,8 +73,8 @@ fn empty_ui(ui: &mut Ui, model: &Model, which: Loop) {
              3. Look at what is proposed, move the level, and apply what you like."
         }
         Loop::Position => {
-            "Not tuned yet.\n\n1. Choose the method. PIV holds best; PD is the simplest.\n2. Choose Turns freely; for an axis with end \
-             stops choose Within and give its travel.\n3. Arm this screen and press Tune."
+            "Not tuned yet.\n\n1. Choose the method. PIV holds best; PD is the simplest.\n2. Say how far the axis may go: if it has end \
+             stops, choose Within and give its travel.\n3. Arm this screen and press Tune."
         }
     };
     ui.add_space(6.0);

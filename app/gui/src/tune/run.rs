@@ -14,6 +14,7 @@ use brushwork_tuning::registers::RegisterTable as _;
 use brushwork_tuning::report::{Measured, Verdict};
 use brushwork_tuning::trace::{Predicted, Stretch};
 use brushwork_tuning::trial::on_model;
+use brushwork_tuning::tune::Excitation;
 use brushwork_tuning::whatif::{Forecast, LoopPoint, forecast, frequency_response, redesign_registers};
 
 use super::measured::{self, Figures};
@@ -258,12 +259,32 @@ fn tried(trace: Trace, measured: Option<Measured>, report: &Report) -> Option<Tr
     let course: Vec<(f64, f64)> = predicted.iter().map(|p| (p.t, values(p.counts, p.speed))).collect();
     let mut figures = measured::figures(&trace, &stretch, &seen, rounding);
     let promised = measured::figures(&trace, &stretch, &course, 0.0);
-    // Its flanks laid over each other see a speed go past its setpoint better than each by itself.
-    let overshoot = measured.map(|measured| measured.overshoot).filter(|over| *over > 0.0);
-    if let (Some(figures), Some(overshoot)) = (figures.as_mut(), overshoot.filter(|_| !stretch.is_position)) {
-        figures.overshoot = overshoot;
+    // Its flanks laid over each other see a speed go past its setpoint better than each by itself; strokes in a travel have no such flanks.
+    let has_flanks = !stretch.is_position && report.request.excitation == Excitation::Free;
+    if let (Some(figures), Some(measured)) = (figures.as_mut(), measured.filter(|_| has_flanks)) {
+        figures.overshoot = measured.overshoot;
     }
     let duty_rms = measured.map(|measured| measured.duty_rms).filter(|rms| *rms > 0.0);
     let considered = Vec::new();
     Some(Tried { trace, stretch, registers, predicted, considered, figures, promised, duty_rms })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    #[test]
+    fn the_overshoot_of_a_speed_is_that_of_its_flanks_laid_over_each_other() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/reports/velocity.json");
+        let report = brushwork_core::tune::file::read(Path::new(path)).expect("a report");
+        let measured = report.measured.expect("a trial");
+        let figures =
+            |report: Report| Run::new(1, report).tried.and_then(|tried| tried.figures).expect("steps");
+        assert!((figures(report.clone()).overshoot - measured.overshoot).abs() < 1e-12);
+        let none = Report { measured: Some(Measured { overshoot: 0.0, ..measured }), ..report.clone() };
+        assert_eq!(figures(none).overshoot, 0.0, "a trial that saw none");
+        let alone = figures(Report { measured: None, ..report });
+        assert!(alone.overshoot > 0.0 && alone.overshoot != measured.overshoot, "{alone:?}");
+    }
 }
