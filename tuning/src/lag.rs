@@ -6,16 +6,13 @@
 //!
 //! What is called the lag is everything that the loop loses between the motion and the torque, beyond the hold and the count difference of a tick: the
 //! mean delay of the filter on the speed, the ticks by which the duty comes late, and the time constant of the winding (inductance over resistance).
-//!
-//! The firmware's ticks fall anywhere between polls. Simulated is what the loop does on average over all phases of its tick: a setpoint comes into force
-//! over the length of one tick, and a register is half a tick old when it is read.
 
-use crate::experiment_guard::{ExperimentGuard, Input};
+use crate::closed_loop_record::{Flanks, RECORD, Stretch, misfits, noise, readings, soft};
 use crate::law::{Law, Windup};
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::model::{Gains, Lag, PlantModel};
 use crate::thresholds::thresholds;
-use crate::ticks::{Setpoint, TickLoop};
+use crate::ticks::TickLoop;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::storage::Owned;
 use nalgebra::{DMatrix, DVector, Dyn, U6, Vector6};
@@ -35,18 +32,9 @@ thresholds! {
         winding_s: (f64, f64) = (0.001, 0.001),
         /// Sum of filter and delay from which on a lag is unlikely, and the standard deviation of what lies beyond it, in seconds.
         long_s: (f64, f64) = (0.012, 0.008),
-        /// Standard deviation of a time stamp, in seconds.
-        stamp_s: f64 = 0.0006,
-        /// How far the counts drift off the model in a second, as a standard deviation over the counts that the motor makes in that second; it grows with the root of the
-        /// time.
-        drift: f64 = 0.003,
-        /// Standard deviation to which the model of a quiet duty is trusted, as a share of full duty.
-        duty: f64 = 0.004,
         /// Standard deviation of the logarithm of the duty's noise against what rounding makes of it under a lag: a filter lets through much less than a delay. Uneven
         /// edges of an encoder and speeds of whole counts a tick make it half or twice as loud.
         rounding: f64 = 0.5,
-        /// How far the duty may be off, as a share of what it changes by in a tick: the phase of the tick, 1 / sqrt(12).
-        flank: f64 = 0.3,
     }
 }
 
@@ -87,8 +75,6 @@ thresholds! {
         slope_step: f64 = 0.02,
         /// How far a parameter may lie outside its bounds, as a standard deviation in units of the parameter.
         bound: f64 = 0.1,
-        /// How much longer than the shortest an exchange may take, in seconds: a longer one says too little about when its counts were read.
-        late_s: f64 = 0.004,
         /// Relative change of misfit and parameters that ends a fit, as in the fit of moves: a thousandth of what tells two starts apart.
         enough: f64 = 1e-5,
         /// Standard deviation of the counts about the model, as a share of what is taken for granted of it, below which their times are known better than that. Of 196 motors
@@ -98,8 +84,24 @@ thresholds! {
         /// Least standard deviation of such counts, as the same share. With it the lag of Motion Minds is within 0.83 ms on average instead of 0.98 (192 plants of seeds 7
         /// and 11).
         least_of_counts: f64 = 0.3,
-        /// Standard deviations from which on a residual counts less and less.
-        knee: f64 = 3.0,
+    }
+}
+
+thresholds! {
+    /// When rising and falling flanks are told apart. Of 400 motors of the bench (seeds 7 and 11) 24 have flanks
+    /// of one direction that tell of the lag alone; of 30 arms and steering gears of a foreign controller (seeds 811 to 818) 22 (MEASURED.md).
+    FLANKS: FlankThresholds {
+        /// Fewest readings of each of them: strokes to and fro have no flank that only rises.
+        least_readings: usize = 40,
+        /// How many times the misfit of the one is that of the other (reduced chi-square) for it to be left out where they differ: rigid motors have 0.6 to 1.6, arms and steering
+        /// gears with backlash whose load has little friction 1.4 to 16.
+        worse: f64 = 1.35,
+        /// By how many standard deviations they are to differ for that.
+        apart: f64 = 1.0,
+        /// The same from which on it is left out in any case.
+        much_worse: f64 = 2.0,
+        /// Standard deviations by which they differ from which on the interval holds both: the five percent of a normal distribution.
+        disagree: f64 = 2.0,
     }
 }
 
@@ -107,47 +109,6 @@ thresholds! {
 const STARTS: [(f64, f64); 4] = [(0.001, 0.2), (0.006, 0.2), (0.001, 1.2), (0.010, 1.0)];
 /// Units of the parameters: filter, delay and winding, s; logarithm of the time constant; time from a command's stamp to its effect, s; logarithm of the gain.
 const UNITS: [f64; 6] = [1e-3, 1e-3, 1e-3, 0.05, 1e-3, 0.01];
-
-/// The closed-loop record.
-#[derive(Clone, Debug, Default)]
-pub struct ClosedLoopRecord {
-    /// (time, setpoint speed).
-    pub setpoints: Vec<(f64, f64)>,
-    /// (time, counts).
-    pub counts: Vec<(f64, f64)>,
-    /// (time, duty).
-    pub duties: Vec<(f64, f64)>,
-    /// Standard deviation of the times of counts, as far as a busy host or line makes it, s.
-    pub stamp_s: f64,
-    /// Whether each count came with its own time, so that it is known to much less than a tick.
-    pub is_dated: bool,
-}
-
-impl ClosedLoopRecord {
-    /// What the experiment guard recorded between two times under speed commands.
-    #[must_use]
-    pub fn of<L: Law>(guard: &ExperimentGuard<'_, L>, from_s: f64, to_s: f64) -> Self {
-        let inside = |t: f64| t >= from_s && t <= to_s;
-        let setpoints = guard.drives.iter().filter(|d| inside(d.t)).filter_map(|d| match d.input {
-            Input::Speed(speed) => Some((d.t, speed)),
-            Input::Duty(_) | Input::Position(..) => None,
-        });
-        let points = || guard.points.iter().zip(&guard.exchanges).filter(|(p, _)| inside(p.t));
-        // The quickest exchanges show what the line takes by itself; when in a longer one the counts were read is open.
-        let shortest = points().map(|(_, took)| took.1).fold(f64::INFINITY, f64::min);
-        let prompt = || points().filter(|(_, took)| took.1 - shortest <= LAG.late_s);
-        let n = prompt().count().max(1) as f64;
-        let stamps = L::stamps(&guard.setup.held);
-        let open = prompt().map(|(_, took)| (took.1 - shortest).powi(2)).sum::<f64>() / n;
-        Self {
-            setpoints: setpoints.collect(),
-            counts: prompt().map(|(p, _)| (p.t, p.counts)).collect(),
-            duties: points().filter_map(|(p, _)| p.duty).collect(),
-            stamp_s: (open / 12.0).sqrt().hypot(stamps.open_s),
-            is_dated: stamps.are_dated,
-        }
-    }
-}
 
 /// The lag and how well it is known.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -187,26 +148,6 @@ impl LagFit {
     pub fn is_unexplained(&self) -> bool {
         self.chi_square > LAG.unexplained
     }
-}
-
-/// How badly a start fits a loop.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct StartMisfit {
-    /// Sum of squares, in variances of the duty.
-    pub(crate) squares: f64,
-    /// How many duties were read.
-    pub(crate) readings: usize,
-}
-
-/// Some seconds of a loop under known gains.
-#[derive(Clone, Debug)]
-pub struct Stretch {
-    /// What was polled.
-    pub record: ClosedLoopRecord,
-    /// The gains that were in force.
-    pub gains: Gains,
-    /// The speed that it was at when the record begins; `None` where it stood and had no setpoint yet.
-    pub before: Option<f64>,
 }
 
 /// What a fit is asked beside the lag.
@@ -260,7 +201,12 @@ pub fn fit_lag<L: Law>(
         None => (known, found),
     };
     let best = found.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let scale = (best.0 / readings).max(1.0);
+    let flanks = [Flanks::Rising, Flanks::Falling].map(|flanks| known.of_flanks(flanks));
+    let told = flanks.iter().filter(|known| known.readings >= FLANKS.least_readings);
+    let by_flank: Vec<(f64, Problem<'_, L>)> = told.filter_map(|known| known.fit_from(best.1.q)).collect();
+    let by_flank = told_apart(&by_flank);
+    let best = by_flank.first().filter(|_| by_flank.len() == 1).copied().unwrap_or(best);
+    let scale = (best.0 / best.1.known.readings.max(1) as f64).max(1.0);
     let loud = 1.0 + (known.loudest() / LAG_WIDTHS.loud_duty).powi(2);
     let (least, most) = LAG_WIDTHS.by_misfit;
     let floor_s =
@@ -268,7 +214,8 @@ pub fn fit_lag<L: Law>(
     let (mut shortest, mut longest) = (f64::INFINITY, 0.0_f64);
     let likely = best.0 + doubt(best.0);
     let by_other_sum = by_other_sum.filter(|_| !has_other_sum);
-    for (_, problem) in found.iter().chain(&by_other_sum).filter(|other| other.0 <= likely) {
+    let whole = found.iter().chain(&by_other_sum).filter(|other| other.0 <= likely && by_flank.len() != 1);
+    for (_, problem) in whole.chain(by_flank.iter().copied()) {
         let total = known.parts(&problem.q).iter().sum::<f64>();
         let sd = loud * (problem.deviation() * scale.sqrt()).hypot(floor_s);
         shortest = shortest.min(total - LAG_WIDTHS.deviations * sd);
@@ -290,6 +237,25 @@ pub fn fit_lag<L: Law>(
         windup: Windup::Open,
         loudness: as_rounding(),
     })
+}
+
+/// The fits of rising and of falling flanks that tell of the lag in place of that of all, or beside it: the better one, where the model does not explain the other, since a load
+/// that runs ahead through its backlash while the motor slows down is not the load that it drives; both, where they disagree and neither is the better; else none.
+fn told_apart<'a, 'b, L: Law>(by_flank: &'b [(f64, Problem<'a, L>)]) -> Vec<&'b (f64, Problem<'a, L>)> {
+    let [one, other] = by_flank else { return Vec::new() };
+    let chi_square = |fit: &(f64, Problem<'a, L>)| fit.0 / fit.1.known.readings.max(1) as f64;
+    let total_s = |fit: &(f64, Problem<'a, L>)| fit.1.known.parts(&fit.1.q).iter().sum::<f64>();
+    let deviation = |fit: &(f64, Problem<'a, L>)| fit.1.deviation() * chi_square(fit).max(1.0).sqrt();
+    let apart = (total_s(one) - total_s(other)).abs() / deviation(one).hypot(deviation(other));
+    let (better, worse) = if chi_square(one) < chi_square(other) { (one, other) } else { (other, one) };
+    let ratio = chi_square(worse) / chi_square(better);
+    if ratio > FLANKS.much_worse || ratio > FLANKS.worse && apart > FLANKS.apart {
+        vec![better]
+    } else if apart > FLANKS.disagree {
+        vec![one, other]
+    } else {
+        Vec::new()
+    }
 }
 
 /// The law with the other sum, and what was polled with what its gains were under it; `None` where it makes no difference.
@@ -317,6 +283,8 @@ struct Known<'a, L: Law> {
     longest_filter_s: f64,
     /// Standard deviation of the counts, as a share of what is taken for granted of them.
     of_counts: f64,
+    /// The flanks that are judged.
+    flanks: Flanks,
 }
 
 impl<'a, L: Law> Known<'a, L> {
@@ -327,7 +295,7 @@ impl<'a, L: Law> Known<'a, L> {
             noises: stretches
                 .iter()
                 .map(|stretch| {
-                    let heard = noise(&stretch.record).hypot(LAG_PRIORS.duty);
+                    let heard = noise(&stretch.record).hypot(RECORD.duty);
                     heard.max(rounding_between_plateaus(plant, law, &stretch.gains, qpps))
                 })
                 .collect(),
@@ -335,10 +303,17 @@ impl<'a, L: Law> Known<'a, L> {
             law: *law,
             qpps,
             sd_ln_tau: (factor * sd_ln_tau).clamp(least, most),
-            readings: stretches.iter().flat_map(|stretch| readings(&stretch.record)).sum(),
+            readings: stretches.iter().flat_map(|stretch| readings(stretch, Flanks::All)).sum(),
             longest_filter_s: law.facts().filters_s.iter().copied().fold(0.0, f64::max),
             of_counts: 1.0,
+            flanks: Flanks::All,
         }
+    }
+
+    /// The same by some flanks alone.
+    fn of_flanks(&self, flanks: Flanks) -> Self {
+        let readings = self.stretches.iter().flat_map(|stretch| readings(stretch, flanks)).sum();
+        Self { readings, flanks, ..self.clone() }
     }
 
     /// The fit from a filter, s, and a delay, ticks, with its misfit.
@@ -379,7 +354,7 @@ impl<'a, L: Law> Known<'a, L> {
         let residuals = self.residuals(q);
         let (mut from, mut squares, mut counted) = (0, 0.0, 0);
         for stretch in self.stretches {
-            let [counts, duties] = readings(&stretch.record);
+            let [counts, duties] = readings(stretch, self.flanks);
             squares += residuals.iter().skip(from).take(counts).map(|rest| rest * rest).sum::<f64>();
             counted += counts;
             // One residual of each stretch is that of the duty's noise.
@@ -431,14 +406,14 @@ impl<'a, L: Law> Known<'a, L> {
                 twin.start_steady(speed);
             }
             let from = all.len();
-            misfits(&stretch.record, twin, &self.law, offset_s, stretch.before, *noise, &mut all);
-            let [counts, _] = readings(&stretch.record);
+            misfits(stretch, self.flanks, twin, &self.law, offset_s, *noise, &mut all);
+            let [counts, _] = readings(stretch, self.flanks);
             all.iter_mut().skip(from).take(counts).for_each(|rest| *rest /= self.of_counts);
             let whole = Lag { delay_ticks: (delay_s + winding_s) / tick_s, ..lag };
             let predicted = LoopPlant::new(DiscretePlant::of(&model, tick_s), &self.law, whole)
                 .margins(&stretch.gains, self.qpps)
                 .noise_duty;
-            all.push(soft((noise / predicted.hypot(LAG_PRIORS.duty)).ln() / LAG_PRIORS.rounding));
+            all.push(soft((noise / predicted.hypot(RECORD.duty)).ln() / LAG_PRIORS.rounding));
         }
         all.push(q[3] * UNITS[3] / self.sd_ln_tau);
         all.push(offset_s / LAG_PRIORS.offset_s);
@@ -520,215 +495,13 @@ pub(crate) fn goes_by_whole_counts<L: Law>(law: &L) -> bool {
     law.facts().speed_step * law.tick_s() > 0.99
 }
 
-/// Deviation of the duty about its trend in the second halves of the plateaus: the median of those that have five readings.
-fn noise(record: &ClosedLoopRecord) -> f64 {
-    let end = record.duties.last().map_or(0.0, |last| last.0);
-    let ends = record.setpoints.iter().skip(1).map(|setpoint| setpoint.0).chain([end]);
-    let mut squares: Vec<f64> = record
-        .setpoints
-        .iter()
-        .zip(ends)
-        .filter_map(|(from, to)| {
-            let half = 0.5 * (from.0 + to);
-            let inside: Vec<(f64, f64)> =
-                record.duties.iter().copied().filter(|duty| duty.0 > half && duty.0 < to).collect();
-            (inside.len() >= 5).then(|| about_line(&inside))
-        })
-        .collect();
-    squares.sort_by(f64::total_cmp);
-    squares.get(squares.len() / 2).map_or(0.02, |square| square.sqrt())
-}
-
-/// How many counts and how many duties of a record are judged.
-fn readings(record: &ClosedLoopRecord) -> [usize; 2] {
-    let from_s = record.judged_from_s();
-    let counts = record.counts.iter().filter(|count| count.0 >= from_s).count();
-    [counts.saturating_sub(1), record.duties.iter().filter(|duty| duty.0 > from_s).count()]
-}
-
-/// Variance about the straight line that fits best.
-fn about_line(points: &[(f64, f64)]) -> f64 {
-    let n = points.len() as f64;
-    let mean = |of: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / n;
-    let (t, y) = (mean(&|p| p.0), mean(&|p| p.1));
-    let (tt, ty) = (mean(&|p| (p.0 - t).powi(2)), mean(&|p| (p.0 - t) * (p.1 - y)));
-    let slope = if tt > 0.0 { ty / tt } else { 0.0 };
-    points.iter().map(|p| (p.1 - y - slope * (p.0 - t)).powi(2)).sum::<f64>() / (n - 2.0)
-}
-
-/// What a loop does under the setpoints of a record, tick by tick from its first poll on.
-struct Followed {
-    start: f64,
-    tick_s: f64,
-    positions: Vec<f64>,
-    duties: Vec<f64>,
-}
-
-impl Followed {
-    /// `before` is the setpoint before the first one of the record, where the loop is at work already. `offset_s` is how long after its stamp a setpoint
-    /// takes effect, but for the wait for a tick.
-    fn new<L: Law>(
-        record: &ClosedLoopRecord,
-        mut twin: TickLoop<L>,
-        law: &L,
-        offset_s: f64,
-        before: Option<f64>,
-    ) -> Option<Self> {
-        let tick_s = law.tick_s();
-        let start = record.counts.first()?.0;
-        let end = record.duties.last().map_or(start, |last| last.0).max(record.counts.last()?.0);
-        let ticks = ((end - start) / tick_s) as usize + 3;
-        let (mut positions, mut duties) = (Vec::with_capacity(ticks), Vec::with_capacity(ticks));
-        let (mut next, mut goal) = (0, before);
-        for n in 0..ticks {
-            let t = start + n as f64 * tick_s;
-            // On average over the phases of the tick, a setpoint comes into force over the length of one.
-            let share = |at: f64| ((t - at - offset_s) / tick_s + 0.5).clamp(0.0, 1.0);
-            while let Some(&(at, speed)) = record.setpoints.get(next)
-                && share(at) >= 1.0
-            {
-                goal = Some(speed);
-                next += 1;
-            }
-            positions.push(twin.motion.position);
-            let coming = record.setpoints.get(next).map(|&(at, speed)| (share(at), speed));
-            let now = match (goal, coming) {
-                (Some(old), Some((share, new))) => Some(old + share * (new - old)),
-                (None, Some((share, new))) if share > 0.5 => Some(new),
-                (old, _) => old,
-            };
-            if let Some(speed) = now {
-                twin.tick(Setpoint::Speed(speed), 0.0);
-            }
-            duties.push(twin.duty);
-        }
-        Some(Self { start, tick_s, positions, duties })
-    }
-
-    fn at(&self, values: &[f64], t: f64) -> f64 {
-        // Assumed: the register is refreshed once a tick, so a reading is half a tick old on average.
-        let x = ((t - self.start) / self.tick_s - 0.5).max(0.0);
-        let n = (x as usize).min(values.len() - 2);
-        values[n] + (values[n + 1] - values[n]) * (x - n as f64).min(1.0)
-    }
-
-    fn position_at(&self, t: f64) -> f64 {
-        self.at(&self.positions, t)
-    }
-
-    fn duty_at(&self, t: f64) -> f64 {
-        self.at(&self.duties, t)
-    }
-}
-
-/// The record that a loop, at work at the speed `before`, would have given under the same setpoints and polls.
-pub(crate) fn predicted_record<L: Law>(
-    record: &ClosedLoopRecord,
-    twin: TickLoop<L>,
-    law: &L,
-    before: f64,
-) -> Option<ClosedLoopRecord> {
-    let followed = Followed::new(record, twin, law, 0.0, Some(before))?;
-    let counts = record.counts.iter().map(|&(t, _)| (t, followed.position_at(t).floor())).collect();
-    Some(ClosedLoopRecord { setpoints: record.setpoints.clone(), counts, ..ClosedLoopRecord::default() })
-}
-
-impl ClosedLoopRecord {
-    /// How badly the duties of the start from rest fit a loop, whose duty is as noisy as in `steady`; `None` where none was read.
-    pub(crate) fn start_misfit<L: Law>(
-        &self,
-        twin: TickLoop<L>,
-        law: &L,
-        steady: &Self,
-    ) -> Option<StartMisfit> {
-        let until_s = if self.setpoints.len() > 1 { self.judged_from_s() } else { f64::INFINITY };
-        let noise = noise(steady).hypot(LAG_PRIORS.duty);
-        let mut all = Vec::new();
-        duty_misfits(self, &Followed::new(self, twin, law, 0.0, None)?, |t| t < until_s, noise, &mut all);
-        let squares = all.iter().map(|rest| rest * rest).sum();
-        (!all.is_empty()).then_some(StartMisfit { squares, readings: all.len() })
-    }
-
-    /// The start from rest is the business of friction and of the current limit, not of the lag: a record is judged from here on.
-    fn judged_from_s(&self) -> f64 {
-        self.setpoints.get(1).map_or(0.0, |second| second.0 - 0.01)
-    }
-}
-
-/// The misfits of counts and duties, in standard deviations. Counts drift off slowly, which a scalar Kalman filter follows; the duty may be off by a
-/// constant, which is friction.
-fn misfits<L: Law>(
-    record: &ClosedLoopRecord,
-    twin: TickLoop<L>,
-    law: &L,
-    offset_s: f64,
-    before: Option<f64>,
-    noise: f64,
-    all: &mut Vec<f64>,
-) {
-    let Some(followed) = Followed::new(record, twin, law, offset_s, before) else { return };
-    let from_s = record.judged_from_s();
-    count_misfits(record, &followed, from_s, all);
-    duty_misfits(record, &followed, |t| t > from_s, noise, all);
-}
-
-/// Those of the counts from a time on.
-fn count_misfits(record: &ClosedLoopRecord, followed: &Followed, from_s: f64, all: &mut Vec<f64>) {
-    let age_s = if record.is_dated { 0.0 } else { followed.tick_s / 12.0_f64.sqrt() };
-    let stamp_s = LAG_PRIORS.stamp_s.hypot(record.stamp_s).hypot(age_s);
-    let mut drift: Option<(f64, f64, f64, f64)> = None;
-    for &(t, count) in record.counts.iter().filter(|count| count.0 >= from_s) {
-        let position = followed.position_at(t);
-        let error = count - position;
-        drift = Some(match drift {
-            None => (t, position, error, 1.0 / 12.0),
-            Some((t0, position0, known, variance)) => {
-                let dt = (t - t0).max(1e-4);
-                let speed = (position - position0) / dt;
-                let white = 1.0 / 12.0 + (stamp_s * speed).powi(2);
-                let walked = variance + (LAG_PRIORS.drift * speed).powi(2) * dt + 1e-3;
-                let spread = walked + white;
-                let innovation = error - known;
-                all.push(soft(innovation / spread.sqrt()));
-                let share = walked / spread;
-                (t, position, known + share * innovation, (1.0 - share) * walked)
-            }
-        });
-    }
-}
-
-/// Those of the duties of some times.
-fn duty_misfits(
-    record: &ClosedLoopRecord,
-    followed: &Followed,
-    is_judged: impl Fn(f64) -> bool,
-    noise: f64,
-    all: &mut Vec<f64>,
-) {
-    let half_s = 0.5 * followed.tick_s + 0.001;
-    let judged = record.duties.iter().filter(|duty| is_judged(duty.0));
-    let compared: Vec<(f64, f64)> = judged
-        .map(|&(t, duty)| {
-            let flank = followed.duty_at(t + half_s) - followed.duty_at(t - half_s);
-            (duty - followed.duty_at(t), noise.hypot(LAG_PRIORS.flank * flank))
-        })
-        .collect();
-    let weights: f64 = compared.iter().map(|(_, sigma)| sigma.powi(-2)).sum();
-    let mean = compared.iter().map(|(rest, sigma)| rest * sigma.powi(-2)).sum::<f64>() / weights.max(1e-9);
-    all.extend(compared.iter().map(|(rest, sigma)| soft((rest - mean) / sigma)));
-}
-
-/// A residual whose square grows only linearly beyond some standard deviations (soft L1, Huber 1964).
-fn soft(r: f64) -> f64 {
-    let x = r / LAG.knee;
-    LAG.knee * (2.0 * ((1.0 + x * x).sqrt() - 1.0)).sqrt().copysign(x)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::closed_loop_record::ClosedLoopRecord;
     use crate::model::Pid;
     use crate::plain_law::PlainLaw;
+    use crate::setpoint::Setpoint;
 
     const PLANT: PlantModel = PlantModel {
         gain_counts_per_s: 40_000.0,
@@ -843,6 +616,31 @@ mod tests {
             )
             .expect("enough readings");
             assert!(found.least_filter_s.is_some_and(|found| least_s.contains(&found)), "{lag:?}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn a_load_that_runs_ahead_while_the_motor_slows_down_does_not_lengthen_the_lag() {
+        let lag = Lag { filter_s: 0.004, delay_ticks: 0.0 };
+        let law = PlainLaw::default();
+        let asked = Asked { filter: true, law: true };
+        let rigid = known_record(lag);
+        // An encoder behind backlash shows a slower speed some milliseconds late, and so does the duty that answers to it.
+        let seen_late =
+            |(t, value): (f64, f64)| (if Flanks::Falling.hold(&rigid, t) { t + 0.006 } else { t }, value);
+        let late = |readings: &[(f64, f64)]| readings.iter().copied().map(seen_late).collect();
+        let record = ClosedLoopRecord {
+            counts: late(&rigid.record.counts),
+            duties: late(&rigid.record.duties),
+            ..rigid.record.clone()
+        };
+        let behind_backlash = Stretch { record, ..rigid.clone() };
+        for stretch in [rigid, behind_backlash] {
+            let found = fit_lag(&[stretch], &PLANT, &law, 40_000.0, 0.03, asked).expect("enough readings");
+            let (low_s, high_s) = found.interval_s;
+            assert!((low_s..=high_s).contains(&lag.total_s(law.tick_s())), "{found:?}");
+            let off_s = found.lag.total_s(law.tick_s()) - lag.total_s(law.tick_s());
+            assert!(off_s.abs() < 0.001, "{off_s} s: {found:?}");
         }
     }
 

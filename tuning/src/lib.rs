@@ -12,6 +12,7 @@ mod backlash;
 pub mod cascade;
 pub mod cause;
 mod closed_loop_monitor;
+pub mod closed_loop_record;
 mod current_silence;
 pub mod design;
 mod diagnosis;

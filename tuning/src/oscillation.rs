@@ -3,7 +3,7 @@
 //! A difference of two polls is a poor speed: a count is rounded, and the register it comes from is up to a tick old. Flanks are
 //! therefore laid over each other by their commands, and a plateau is searched for sines, whose counts grow as they get slower.
 
-use crate::lag::ClosedLoopRecord;
+use crate::closed_loop_record::ClosedLoopRecord;
 use crate::thresholds::thresholds;
 use nalgebra::{Matrix4, Vector4};
 use std::f64::consts::TAU;

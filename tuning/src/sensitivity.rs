@@ -14,13 +14,15 @@ macro_rules! listed {
 #[must_use]
 pub fn thresholds() -> Vec<Threshold> {
     use crate::{
-        alternatives, closed_loop_monitor, current_silence, design, diagnosis, experiment, experiment_guard,
-        fit, lag, law_probe, load_change, margin, model, motor_monitor, moves, open_loop_record, oscillation,
-        pace, promise, response, rules, settle, step, trajectory, tune, verify, winding, windup,
+        alternatives, closed_loop_monitor, closed_loop_record, current_silence, design, diagnosis,
+        experiment, experiment_guard, fit, lag, law_probe, load_change, margin, model, motor_monitor, moves,
+        open_loop_record, oscillation, pace, promise, response, rules, settle, step, trajectory, tune,
+        verify, winding, windup,
     };
     listed![
         alternatives::Thresholds,
         closed_loop_monitor::Thresholds,
+        closed_loop_record::Thresholds,
         current_silence::Thresholds,
         design::binding::Thresholds,
         design::position::Thresholds,
@@ -44,6 +46,7 @@ pub fn thresholds() -> Vec<Threshold> {
         experiment_guard::travel::Thresholds,
         experiment_guard::ways_out::Thresholds,
         fit::Thresholds,
+        lag::FlankThresholds,
         lag::LagPriors,
         lag::LagWidths,
         lag::Thresholds,

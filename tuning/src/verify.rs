@@ -2,10 +2,11 @@
 
 use crate::backlash::with_backlash;
 use crate::cause::Cause;
+use crate::closed_loop_record::{ClosedLoopRecord, Stretch, predicted_record};
 use crate::design::{Design, Goal, Task, deadzone};
 use crate::experiment::rest;
 use crate::experiment_guard::{ExperimentGuard, Point};
-use crate::lag::{Asked, ClosedLoopRecord, LagFit, Stretch, fit_lag, predicted_record};
+use crate::lag::{Asked, LagFit, fit_lag};
 use crate::law::{Law, Windup};
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::margin::{MARGIN, headroom, may_be_short, scaled};

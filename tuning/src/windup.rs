@@ -4,10 +4,11 @@
 //! duty than there is, and the duty that is read back in the meantime, and as long as the integral takes to forget it, is another one under each.
 
 use crate::cause::Cause;
+use crate::closed_loop_record::{ClosedLoopRecord, StartMisfit};
 use crate::design::Task;
 use crate::experiment::rest;
 use crate::experiment_guard::ExperimentGuard;
-use crate::lag::{ClosedLoopRecord, LagFit, StartMisfit};
+use crate::lag::LagFit;
 use crate::law::{Law, Windup};
 use crate::model::{Gains, PlantModel};
 use crate::request::Excitation;
