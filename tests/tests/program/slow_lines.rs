@@ -271,7 +271,7 @@ fn corners() -> impl Iterator<Item = (Case, bool)> {
     let ends = [(2_400, 0, false), (2_400, 400, false), (460_800, 0, true), (460_800, 400, false)];
     let ends = ends.map(|(rate_bps, latency_ms, is_tuned)| (rate_bps, latency_ms, 16, is_tuned));
     let between = [
-        (9_600, 0, 0, false),
+        (4_800, 0, 0, true),
         (19_200, 0, 0, true),
         (38_400, 0, 0, true),
         (38_400, 20, 0, false),

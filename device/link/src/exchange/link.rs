@@ -500,7 +500,8 @@ impl Exchange {
         if request.patience > SHORT_WORK || self.is_searching() {
             return;
         }
-        let bytes = u32::try_from(request.bytes.len() + request.reply_length).unwrap_or(u32::MAX);
+        let length = request.reply_length.min(self.received.len());
+        let bytes = u32::try_from(request.bytes.len() + length).unwrap_or(u32::MAX);
         let on_the_wire = self.transport.byte_time().unwrap_or_default().saturating_mul(bytes);
         let known = on_the_wire + request.patience + self.stolen;
         let since = |at: Duration| span.replied_at.saturating_sub(at).saturating_sub(known);

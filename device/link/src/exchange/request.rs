@@ -13,7 +13,7 @@ pub const RETRIES: u32 = 2;
 pub struct Outgoing<'a> {
     /// The bytes.
     pub bytes: &'a [u8],
-    /// Length of the shortest reply.
+    /// Length of the reply: of the longest where it goes by its content, since a serial server or a radio may hand a reply over when it is whole.
     pub reply_length: usize,
     /// Time the controller may take beyond the link's own latency, for work such as erasing.
     pub patience: Duration,

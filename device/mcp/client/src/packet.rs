@@ -97,7 +97,7 @@ pub fn transact(exchange: &mut Exchange, watch: &dyn Watch, ask: &Ask<'_>) -> Re
     let bytes = ask.request.encode(ask.generation).map_err(|source| encode_error(&source))?;
     let outgoing = Outgoing {
         bytes: &bytes,
-        reply_length: form.reply.width().unwrap_or(SHORTEST_OPEN_REPLY),
+        reply_length: form.reply.most_bytes(),
         patience: patience(form),
         retries: ask.retries,
         once: !form.effect.may_be_repeated(),
@@ -184,9 +184,6 @@ impl Wire for PacketWire {
         self.hidden.as_deref()
     }
 }
-
-/// Length of the shortest reply whose length depends on its content: a count and a CRC.
-const SHORTEST_OPEN_REPLY: usize = 3;
 
 /// Why a form is a guess, if it is one.
 fn guess(row: &Command, form: &Form) -> Option<String> {

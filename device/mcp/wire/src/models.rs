@@ -391,6 +391,11 @@ pub static MODELS: &[Model] = &[
     },
 ];
 
+/// As many pins, outputs or streams as any board of [`MODELS`] has, whichever is most.
+pub(crate) fn most_records() -> usize {
+    MODELS.iter().flat_map(|model| [model.pins.len(), model.douts, model.streams]).max().unwrap_or_default()
+}
+
 /// Boards of either line that are not in [`MODELS`], by the current in their name, ascending. The first row of a line stands for a
 /// board whose name states none.
 macro_rules! unlisted {

@@ -173,6 +173,25 @@ fn a_deadline_grows_with_the_bytes_and_the_baud_rate() {
     assert!(waited >= expected && waited < expected + ms(1), "{waited:?}");
 }
 
+/// As a serial server or a radio does it. Asked again before that, the controller would answer three times, and what is asked next would be answered too late.
+#[test]
+fn a_long_reply_that_is_handed_over_when_it_is_whole_is_waited_for() {
+    const READ_SIGNALS: [u8; 2] = [0x80, number::READ_SIGNALS];
+    let mut signals = vec![0; 1 + 18 * 45];
+    signals[0] = 18;
+    let reply = reply_to(&READ_SIGNALS, &signals);
+    let clock = VirtualClock::new();
+    // 38,400 baud: ten bits take 0.26 ms.
+    let byte_time = Duration::from_micros(260);
+    let on_the_wire = byte_time * u32::try_from(READ_SIGNALS.len() + reply.len()).unwrap();
+    let answers = vec![(READ_SIGNALS.to_vec(), vec![(on_the_wire + ms(3), reply)])];
+    let (transport, tap) = ScriptedTransport::new(&clock, script(answers));
+    let mut exchange = Exchange::new(transport.with_byte_time(byte_time), Arc::new(clock.clone()));
+    ask(&mut exchange, &Unwatched, number::READ_SIGNALS, &[]).unwrap();
+    assert_eq!(tap.writes().len(), 1, "it is asked once");
+    assert!(!exchange.is_late(), "the time of its bytes is no lateness");
+}
+
 #[test]
 fn a_wrong_crc_is_retried_after_the_gap() {
     let answers = vec![

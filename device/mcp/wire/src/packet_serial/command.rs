@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use super::identity::Generation;
 use super::number;
-use crate::models::Family;
-use brushwork_values::{Field, width_of};
+use crate::models::{Family, most_records};
+use brushwork_values::{Field, Kind, width_of};
 
 /// A command of packet serial: one row of [`COMMANDS`](super::COMMANDS).
 #[derive(Debug, Clone, Copy)]
@@ -152,14 +152,32 @@ impl Reply {
 
     /// Bytes of the whole reply, acknowledgement and CRC included; `None` if that depends on the content.
     pub const fn width(&self) -> Option<usize> {
-        let around = match self {
+        match width_of(self.fields()) {
+            Some(width) => Some(self.around() + width),
+            None => None,
+        }
+    }
+
+    /// Bytes of the reply, of the longest where its length goes by its content: a text as long as it may be, and as many records as any model has.
+    pub fn most_bytes(&self) -> usize {
+        let most_of = |field: &Field| {
+            if let Kind::Text { max } = field.kind {
+                return max;
+            }
+            if let Kind::Counted(record) = field.kind {
+                return 1 + most_records() * width_of(record).unwrap_or_default();
+            }
+            field.kind.width().unwrap_or_default()
+        };
+        self.around() + self.fields().iter().map(most_of).sum::<usize>()
+    }
+
+    /// Bytes beside the fields: an acknowledgement, a checksum.
+    const fn around(&self) -> usize {
+        match self {
             Self::Ack | Self::AckThenStatus(_) => 1,
             Self::Data(_) => 2,
             Self::AckThenData(_) => 3,
-        };
-        match width_of(self.fields()) {
-            Some(width) => Some(around + width),
-            None => None,
         }
     }
 }
