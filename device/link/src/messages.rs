@@ -238,6 +238,7 @@ messages! {
         StoppedSince "Stop was pressed after it was asked for",
         TooOld "it waited for longer than a motion may live",
         NotArmed "the motors are not armed",
+        ArmedNoLonger { why: String } "the motors are armed no longer: {why}",
         NotStopped "the motors could not be stopped first",
         NoTimeoutForPage "it has no time-out of its own, and a page whose tab is closed or whose browser is gone cannot stop a motor",
         NotStanding "the motors did not confirm that they stand",

@@ -237,6 +237,26 @@ impl Event {
     }
 }
 
+impl DisarmReason {
+    /// What went wrong, as a clause; `None` where somebody disarmed or something else was to be done.
+    #[must_use]
+    pub fn trouble(&self) -> Option<String> {
+        let is_trouble = match self {
+            Self::DeadMan | Self::Fault(_) | Self::Restarted | Self::NoAnswer | Self::NotTogether => true,
+            Self::Asked
+            | Self::Stop
+            | Self::StopFromOutside
+            | Self::ScopeChange
+            | Self::Selection
+            | Self::SettingsChanged
+            | Self::JobEnded
+            | Self::LinkLost
+            | Self::Closing => false,
+        };
+        is_trouble.then(|| self.to_string().trim_start_matches("Disarmed: ").to_owned())
+    }
+}
+
 impl fmt::Display for DisarmReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

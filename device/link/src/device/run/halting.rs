@@ -131,6 +131,7 @@ impl DeviceLoop {
         self.guard.motion_ends();
         self.guard.set_armed(false, self.signals.disarms());
         if self.armed.take().is_some() {
+            self.disarmed_by = Some(reason.clone());
             self.outbox.send(Event::Disarmed(reason));
             self.outbox.wake_window();
         }

@@ -100,7 +100,11 @@ impl DeviceLoop {
             return refuse(CauseMessage::StoppedSince, RemedyMessage::StartWhenReady);
         }
         if !self.permit().motion {
-            return refuse(CauseMessage::NotArmed, RemedyMessage::ArmFirst);
+            // Whoever has just armed is told what undid it.
+            return match self.disarmed_by.as_ref().and_then(DisarmReason::trouble) {
+                Some(why) => refuse(CauseMessage::ArmedNoLonger { why }, RemedyMessage::ArmWhenReady),
+                None => refuse(CauseMessage::NotArmed, RemedyMessage::ArmFirst),
+            };
         }
         None
     }

@@ -95,6 +95,7 @@ impl DeviceLoop {
             selected: 0,
             joined: Vec::new(),
             armed: None,
+            disarmed_by: None,
             held: Vec::new(),
             sweep: Sweep::new(now),
             statistics_at: now + STATISTICS_INTERVAL,

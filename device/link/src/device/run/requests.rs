@@ -225,6 +225,7 @@ impl DeviceLoop {
             self.units[index].plan.status_told_at = None;
         }
         self.armed = Some(armed);
+        self.disarmed_by = None;
         self.tend_guard();
         self.guard.set_armed(true, disarms);
         self.restart_sweep();

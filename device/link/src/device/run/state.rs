@@ -5,6 +5,7 @@ use super::sweep::{Plan, Sweep};
 use crate::clock::Clock;
 use crate::device::controller::{Controller, Search};
 use crate::device::drive::ArmScope;
+use crate::device::event::DisarmReason;
 use crate::device::handle::Envelope;
 use crate::device::options::DeviceOptions;
 use crate::device::outbox::Outbox;
@@ -45,6 +46,8 @@ pub struct DeviceLoop {
     /// Units that are armed, driven and read together with the selected one.
     pub(super) joined: Vec<usize>,
     pub(super) armed: Option<Armed>,
+    /// What disarmed last, until something is armed again.
+    pub(super) disarmed_by: Option<DisarmReason>,
     /// What the guard was told last: whether something is armed, and of each unit whether it moved and its script was started.
     pub(super) held: Vec<(bool, bool)>,
     pub(super) poll: PollRate,

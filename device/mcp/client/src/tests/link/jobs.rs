@@ -114,6 +114,23 @@ fn a_job_that_moves_motors_needs_arming() {
 }
 
 #[test]
+fn a_job_that_comes_after_something_disarmed_says_what_it_was() {
+    let mut link = Link::armed();
+    link.bus().mute.insert(number::READ_STATUS);
+    link.run_for(ms(1_000));
+    assert_eq!(link.disarm_reasons(), [DisarmReason::NoAnswer]);
+    start(&mut link, drive_for_ever);
+    link.run_for(ms(500));
+    let JobEnding::Failed(failure) = ending(&link).0 else { panic!("{:?}", ending(&link)) };
+    assert_eq!(
+        failure.to_string(),
+        "Could not try the motor on 0x80 at /dev/test: the motors are armed no longer: no answer came in time: check the controller's \
+         power, its cable and the line, and whether this computer is too busy. Arm again when you are ready."
+    );
+    assert_eq!(link.bus().count(number::DUTY_M1), 0);
+}
+
+#[test]
 fn a_job_that_claims_to_move_nothing_cannot_move_anything_unarmed() {
     let mut link = Link::connected();
     link.handle.start(Job::new(JobSaid::Sneak, ms(1_000), drive_for_ever)).unwrap();
