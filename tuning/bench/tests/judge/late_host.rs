@@ -14,7 +14,7 @@ use brushwork_tuning_bench::line::{Bench as _, Event, SimulatedLine};
 use brushwork_tuning_bench::mcp::population::specimen;
 use brushwork_tuning_bench::motion_mind::population::specimen as mind_specimen;
 use brushwork_tuning_bench::run::request_of;
-use brushwork_tuning_bench::unit::Unit;
+use brushwork_tuning_bench::unit::{UnderTest, Unit};
 use brushwork_values::Motor;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -419,4 +419,30 @@ fn what_a_run_computes_while_the_motor_is_off_is_not_called_late() {
             .find(|cause| matches!(cause, Cause::AnsweredLate { .. } | Cause::TakenLate { .. }));
         assert_eq!(late, None, "plant {number}");
     }
+}
+
+/// Plants behind a slow line.
+const SLOW_PLANTS: usize = 16;
+
+/// On such a line the check of the wiring sees the first motion late: the identification begins when the motor stands again.
+#[test]
+fn friction_and_gain_of_a_slow_line_lie_in_their_intervals() {
+    let (mut frictions, mut gains) = (0, 0);
+    for number in 0..SLOW_PLANTS {
+        let mut plant = specimen(31, number);
+        plant.link.latency_s = 0.007;
+        let truth = UnderTest::new(plant.clone()).truth;
+        let report = tune(&mut Unit::axis(&plant), &request_of(&plant, Method::Velocity));
+        let Some(fit) = report.fit else { continue };
+        let friction = fit.model.coulomb_duty - truth.coulomb_duty;
+        let gain = (fit.model.gain_counts_per_s / truth.gain_counts_per_s).ln();
+        println!(
+            "plant {number} {:?}: friction {friction:.4} and gain {gain:.4} off, deviations {:.4} and {:.4}",
+            plant.kind, fit.sd_coulomb, fit.sd_ln_gain
+        );
+        frictions += usize::from(friction.abs() <= 2.0 * fit.sd_coulomb);
+        gains += usize::from(gain.abs() <= 2.0 * fit.sd_ln_gain);
+    }
+    // Begun while the motor still turned it is 13 and 13.
+    assert!(frictions >= 15 && gains >= 15, "friction of {frictions} and gain of {gains} of {SLOW_PLANTS}");
 }
