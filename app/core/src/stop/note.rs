@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 pub(super) const FOLDER: &str = "held";
 /// No note is longer.
 const LONGEST: u64 = 8 * 1024;
-/// No more are looked at.
+/// No more are looked at, the latest first: what died without clearing up leaves its note until somebody asks for its line.
 const MOST: usize = 256;
 
 /// Who holds a line, and how it is asked to stop it.
@@ -50,7 +50,10 @@ impl Note {
     /// The notes of those that hold one of these lines.
     pub(super) fn of(folder: &Path, lines: &[String]) -> Vec<(PathBuf, Self)> {
         let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
-        let paths = entries.flatten().take(MOST).map(|entry| entry.path());
+        let left_at = |entry: &fs::DirEntry| entry.metadata().and_then(|known| known.modified()).ok();
+        let mut entries: Vec<_> = entries.flatten().map(|entry| (left_at(&entry), entry.path())).collect();
+        entries.sort_unstable_by(|left, right| right.cmp(left));
+        let paths = entries.into_iter().take(MOST).map(|(_, path)| path);
         let notes = paths.filter_map(|path| Some((Self::read(&path)?, path)));
         let is_meant = |note: &Self| note.lines.iter().any(|line| lines.contains(line));
         notes.filter(|(note, _)| is_meant(note)).map(|(note, path)| (path, note)).collect()
@@ -160,6 +163,27 @@ mod tests {
         assert_eq!((rights(&held), rights(&path)), (0o700, 0o600));
         assert_eq!(Note::of(&held, &note.lines), [(path, note.clone())]);
         assert!(Note::of(&held, &["/dev/ttyACM1".to_owned()]).is_empty());
+    }
+
+    #[test]
+    fn a_note_is_found_behind_those_of_any_number_of_dead_programs() {
+        let folder = tempfile::tempdir().unwrap();
+        let dead = Note {
+            program: "brushwork drive".to_owned(),
+            process: 7,
+            lines: vec!["/dev/ttyACM1".to_owned()],
+            at: "127.0.0.1:5000".parse().unwrap(),
+            question: secret(),
+            answer: secret(),
+        };
+        for _ in 0..2 * MOST {
+            let path = dead.leave(folder.path()).unwrap();
+            let before = std::time::SystemTime::now() - std::time::Duration::from_secs(60);
+            File::options().write(true).open(path).unwrap().set_modified(before).unwrap();
+        }
+        let alive = Note { lines: vec!["/dev/ttyACM0".to_owned()], ..dead };
+        let path = alive.leave(folder.path()).unwrap();
+        assert_eq!(Note::of(folder.path(), &alive.lines), [(path, alive.clone())]);
     }
 
     #[test]
