@@ -241,8 +241,16 @@ impl DisarmReason {
     /// What went wrong, as a clause; `None` where somebody disarmed or something else was to be done.
     #[must_use]
     pub fn trouble(&self) -> Option<String> {
-        let is_trouble = match self {
-            Self::DeadMan | Self::Fault(_) | Self::Restarted | Self::NoAnswer | Self::NotTogether => true,
+        let clause = match self {
+            Self::DeadMan => {
+                "this computer answered late: the program did not renew the motion within 250 ms"
+            }
+            Self::Fault(faults) => return Some(format!("the controller reports {}", faults.join(", "))),
+            Self::Restarted => "the controller has restarted",
+            Self::NoAnswer => {
+                "no answer came in time: check the controller's power, its cable and the line, and whether this computer is too busy"
+            }
+            Self::NotTogether => "one of the controllers that move together did not take the command",
             Self::Asked
             | Self::Stop
             | Self::StopFromOutside
@@ -251,37 +259,32 @@ impl DisarmReason {
             | Self::SettingsChanged
             | Self::JobEnded
             | Self::LinkLost
-            | Self::Closing => false,
+            | Self::Closing => return None,
         };
-        is_trouble.then(|| self.to_string().trim_start_matches("Disarmed: ").to_owned())
+        Some(clause.to_owned())
     }
 }
 
 impl fmt::Display for DisarmReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Asked => f.write_str("Disarmed"),
-            Self::Stop => f.write_str("Disarmed: Stop was pressed"),
-            Self::StopFromOutside => f.write_str("Stopped by `brushwork stop`, from another program"),
-            Self::DeadMan => f.write_str(
-                "Disarmed: this computer answered late: the program did not renew the motion within 250 ms",
-            ),
-            Self::Fault(faults) => write!(f, "Disarmed: the controller reports {}", faults.join(", ")),
-            Self::ScopeChange => f.write_str("Disarmed: another screen was opened"),
-            Self::Selection => f.write_str("Disarmed: another unit was selected"),
-            Self::SettingsChanged => {
-                f.write_str("Disarmed: a time-out, stream, priority or address was changed")
-            }
-            Self::Restarted => f.write_str("Disarmed: the controller has restarted"),
-            Self::NoAnswer => f.write_str(
-                "Disarmed: no answer came in time: check the controller's power, its cable and the line, and whether this computer is too busy",
-            ),
-            Self::NotTogether => {
-                f.write_str("Disarmed: one of the controllers that move together did not take the command")
-            }
-            Self::JobEnded => f.write_str("Disarmed: the job that moved the motors has ended"),
-            Self::LinkLost => f.write_str("Disarmed: the link was lost"),
-            Self::Closing => f.write_str("Disarmed: the link is being closed"),
+        if let Some(trouble) = self.trouble() {
+            return write!(f, "Disarmed: {trouble}");
         }
+        f.write_str(match self {
+            Self::Stop => "Disarmed: Stop was pressed",
+            Self::StopFromOutside => "Stopped by `brushwork stop`, from another program",
+            Self::ScopeChange => "Disarmed: another screen was opened",
+            Self::Selection => "Disarmed: another unit was selected",
+            Self::SettingsChanged => "Disarmed: a time-out, stream, priority or address was changed",
+            Self::JobEnded => "Disarmed: the job that moved the motors has ended",
+            Self::LinkLost => "Disarmed: the link was lost",
+            Self::Closing => "Disarmed: the link is being closed",
+            Self::Asked
+            | Self::DeadMan
+            | Self::Fault(_)
+            | Self::Restarted
+            | Self::NoAnswer
+            | Self::NotTogether => "Disarmed",
+        })
     }
 }
