@@ -89,7 +89,7 @@ impl Window {
     }
 
     fn wait_until(&mut self, what: &str, holds: impl Fn(&Self) -> bool) {
-        let mut wait = Wait::new();
+        let mut wait = Wait::with_frames();
         while !holds(self) {
             assert!(wait.goes_on(), "waited {PATIENCE:?} for {what}, but: {:?}", self.texts());
             self.harness.step();

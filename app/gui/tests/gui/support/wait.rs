@@ -9,6 +9,9 @@ pub const PATIENCE: Duration = Duration::from_secs(60);
 /// Time between two looks.
 const INTERVAL: Duration = Duration::from_millis(3);
 
+/// The same where each look draws a frame, which takes the processor from what is waited for.
+const FRAME_INTERVAL: Duration = Duration::from_millis(25);
+
 /// Looks until `look` finds something. `there` tells what was there instead when it never does.
 pub fn until_some<T>(what: &str, mut look: impl FnMut() -> Option<T>, there: impl FnOnce() -> String) -> T {
     let mut wait = Wait::new();
@@ -29,17 +32,23 @@ pub fn until(what: &str, mut holds: impl FnMut() -> bool, there: impl FnOnce() -
 #[derive(Debug)]
 pub struct Wait {
     began: Instant,
+    interval: Duration,
 }
 
 impl Wait {
     /// Begins now.
     pub fn new() -> Self {
-        Self { began: Instant::now() }
+        Self { began: Instant::now(), interval: INTERVAL }
+    }
+
+    /// Begins now, with a frame drawn at each look.
+    pub fn with_frames() -> Self {
+        Self { interval: FRAME_INTERVAL, ..Self::new() }
     }
 
     /// Waits a moment; false when the time is up.
     pub fn goes_on(&mut self) -> bool {
-        std::thread::sleep(INTERVAL);
+        std::thread::sleep(self.interval);
         self.began.elapsed() < PATIENCE
     }
 
