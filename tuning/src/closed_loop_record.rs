@@ -93,15 +93,14 @@ pub(crate) enum Flanks {
 impl Flanks {
     /// Whether the last setpoint before a time made one of these flanks.
     pub(crate) fn hold(self, stretch: &Stretch, t: f64) -> bool {
+        if self == Self::All {
+            return true;
+        }
         let (mut last, mut rises) = (stretch.before.unwrap_or(0.0), true);
         for (_, speed) in stretch.record.setpoints.iter().take_while(|setpoint| setpoint.0 <= t) {
             (rises, last) = (speed.abs() > last.abs(), *speed);
         }
-        match self {
-            Self::All => true,
-            Self::Rising => rises,
-            Self::Falling => !rises,
-        }
+        rises == (self == Self::Rising)
     }
 }
 
