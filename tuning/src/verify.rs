@@ -207,7 +207,7 @@ pub fn check_moves<L: Law>(
     let mut task = *task;
     let found = leave_room(guard, request, &mut task, report)?;
     let task = &task;
-    // Gains that were raised and stayed quiet do not answer for what the model leaves unexplained: of 2,000 runs (MEASURED.md, "The lag") eight springy arms had a true maximum
+    // Gains that were raised and stayed quiet do not answer for what the model leaves unexplained: of 2,200 runs (MEASURED.md, "The lag") eight springy arms had a true maximum
     // sensitivity of 1.82 to 2.07 with them.
     let is_unexplained = report.lag.is_some_and(|lag| lag.is_unexplained());
     let is_doubtful = is_unexplained || found.is_some_and(|room| room.is_doubtful);
