@@ -213,7 +213,8 @@ impl Action {
             Keys::Shortcut(shortcut)
             | Keys::OnMcl(shortcut)
             | Keys::InText(shortcut)
-            | Keys::Beside(shortcut) => ctx.format_shortcut(&shortcut),
+            // A bracket is looked for on the keyboard by its sign.
+            | Keys::Beside(shortcut) => ctx.format_shortcut(&shortcut).replace(Key::OpenBracket.name(), "["),
             Keys::Elsewhere(text) => as_written(ctx, text),
             Keys::Stop => said_stop_words(ctx),
         }
