@@ -41,7 +41,7 @@ thresholds! {
         /// Lengths of the stays between these steps, relative: irregular, so that no limit cycle can hide in step with them.
         dwells: [f64; 6] = [1.0, 0.87, 1.15, 0.93, 1.17, 0.83],
         /// Time constant below which they are done twice, in seconds: polls see such a motor on its way but once or twice in a step. Of the 50 coreless motors of seeds 7 and 11 the
-        /// lag is within 0.43 ms of a bias of 0.26 ms then (standard deviation; 0.59 ms before), and six more have a J of at most 1.5, for 1.2 s each.
+        /// lag is within 0.43 ms of a bias of 0.26 ms then (standard deviation; 0.59 ms before), and four more have a J of at most 1.5, for 1.2 s each.
         quick_s: f64 = 0.025,
         /// Load that certainly does not move an axis that is off, as a share of the friction.
         most_load: f64 = 0.5,
@@ -171,7 +171,7 @@ fn run_strokes<L: Law>(
     Ok((from_s, to_s))
 }
 
-/// Six steps about the middle speed, from rest, or twice as many. The motor is braked at the end.
+/// Six steps about the middle speed, from rest, and twice as many of a quick motor. The motor is braked at the end.
 fn run_steps<L: Law>(
     guard: &mut ExperimentGuard<'_, L>,
     task: &Task<L>,

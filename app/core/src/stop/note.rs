@@ -123,6 +123,17 @@ mod tests {
         lines_of(&target.parse().unwrap())
     }
 
+    fn note_of(line: &str) -> Note {
+        Note {
+            program: "brushwork drive".to_owned(),
+            process: 7,
+            lines: vec![line.to_owned()],
+            at: "127.0.0.1:5000".parse().unwrap(),
+            question: secret(),
+            answer: secret(),
+        }
+    }
+
     #[test]
     fn a_host_by_name_and_by_number_is_one_line_and_another_port_is_another() {
         assert_eq!(lines("tcp:127.0.0.1:5000"), ["tcp:127.0.0.1:5000"]);
@@ -150,14 +161,7 @@ mod tests {
         use std::os::unix::fs::PermissionsExt as _;
         let folder = tempfile::tempdir().unwrap();
         let held = folder.path().join(FOLDER);
-        let note = Note {
-            program: "brushwork drive".to_owned(),
-            process: 7,
-            lines: vec!["/dev/ttyACM0".to_owned()],
-            at: "127.0.0.1:5000".parse().unwrap(),
-            question: secret(),
-            answer: secret(),
-        };
+        let note = note_of("/dev/ttyACM0");
         let path = note.leave(&held).unwrap();
         let rights = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
         assert_eq!((rights(&held), rights(&path)), (0o700, 0o600));
@@ -168,14 +172,7 @@ mod tests {
     #[test]
     fn a_note_is_found_behind_those_of_any_number_of_dead_programs() {
         let folder = tempfile::tempdir().unwrap();
-        let dead = Note {
-            program: "brushwork drive".to_owned(),
-            process: 7,
-            lines: vec!["/dev/ttyACM1".to_owned()],
-            at: "127.0.0.1:5000".parse().unwrap(),
-            question: secret(),
-            answer: secret(),
-        };
+        let dead = note_of("/dev/ttyACM1");
         for _ in 0..2 * MOST {
             let path = dead.leave(folder.path()).unwrap();
             let before = std::time::SystemTime::now() - std::time::Duration::from_secs(60);
