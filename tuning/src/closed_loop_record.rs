@@ -232,15 +232,15 @@ pub(crate) fn predicted_record<L: Law>(
 }
 
 impl ClosedLoopRecord {
-    /// How badly the duties of the start from rest fit a loop, whose duty is as noisy as in `steady`; `None` where none was read.
+    /// How badly the duties of the start from rest fit a loop whose duty has that standard deviation at a steady speed; `None` where none was read.
     pub(crate) fn start_misfit<L: Law>(
         &self,
         twin: TickLoop<L>,
         law: &L,
-        steady: &Self,
+        steady_duty: f64,
     ) -> Option<StartMisfit> {
         let until_s = if self.setpoints.len() > 1 { self.judged_from_s() } else { f64::INFINITY };
-        let noise = noise(steady).hypot(RECORD.duty);
+        let noise = steady_duty.hypot(RECORD.duty);
         let mut all = Vec::new();
         duty_misfits(self, &Followed::new(self, twin, law, 0.0, None)?, |t| t < until_s, noise, &mut all);
         let squares = all.iter().map(|rest| rest * rest).sum();
