@@ -184,8 +184,11 @@ struct Raised<'t, L: Law> {
     /// How far away the target is, counts.
     far: f64,
     side: f64,
-    /// How long each stay is, s.
+    /// How long each stay is, s, but for the time that the motor takes to turn about.
     tried_s: f64,
+    /// How long that is at the start of each stroke that is made since the loop did what its model does not explain, s: while such a shaft is turned about it swings,
+    /// whatever its gains are.
+    turning_s: f64,
 }
 
 impl<'t, L: Law> Raised<'t, L> {
@@ -217,19 +220,30 @@ impl<'t, L: Law> Raised<'t, L> {
         };
         let inner = if part == Part::DerivativeByPositions { *gains } else { velocity_loop_of(gains) };
         let middle = between_counts(MARGIN.speed * task.qpps, tick_s);
-        let steps =
-            Self { task, inner, part, speeds: (middle, middle), about: None, far: 0.0, side: -1.0, tried_s };
+        let steps = Self {
+            task,
+            inner,
+            part,
+            speeds: (middle, middle),
+            about: None,
+            far: 0.0,
+            side: -1.0,
+            tried_s,
+            turning_s: 0.0,
+        };
         if let Some(room) = travel {
             let most = if at_rest { fastest_from_rest(tried_s, task) } else { MARGIN.speed * task.qpps };
             let speed = between_counts((MARGIN.inside_share * room / tried_s).min(most), tick_s);
             let tried_s =
                 if at_rest { tried_s.max(turning_s(speed, task) / (1.0 - MARGIN.heard)) } else { tried_s };
+            let turning_s = if is_free && is_odd && !at_rest { turning_s(speed, task) } else { 0.0 };
             let about = guard.points.last().map(|point| point.counts);
             return Ok(Self {
                 speeds: (-speed, speed),
                 about,
                 far: MARGIN.inside_far * room,
                 tried_s,
+                turning_s,
                 ..steps
             });
         }
@@ -321,6 +335,11 @@ impl<'t, L: Law> Raised<'t, L> {
         latest.len() > MARGIN.turning_polls && shares.all(|share| share > low && share < high)
     }
 
+    /// How long after its begin a stay is listened to, s.
+    fn heard_from_s(&self) -> f64 {
+        self.turning_s + (1.0 - MARGIN.heard) * self.tried_s
+    }
+
     /// Deviation of the duty in the last part of a stay, infinite where it swings quicker than polls see: on the other side of a step, or once more on the same. To and fro
     /// it is always the other way.
     fn activity(&mut self, guard: &mut ExperimentGuard<'_, L>, is_step: bool) -> Result<f64, Cause> {
@@ -328,8 +347,8 @@ impl<'t, L: Law> Raised<'t, L> {
             self.side = -self.side;
         }
         self.go(guard)?;
-        let from_s = guard.now_s() + (1.0 - MARGIN.heard) * self.tried_s;
-        match guard.poll_for(self.tried_s, true) {
+        let from_s = guard.now_s() + self.heard_from_s();
+        match guard.poll_for(self.turning_s + self.tried_s, true) {
             // Its duty, which swings quicker than polls see, does not explain its speed. The speed is the one that it was given, and no answer was late.
             Err(Cause::Stalled) if self.turns(guard) && guard.late_for(Cause::Stalled).is_none() => {
                 return Ok(f64::INFINITY);
@@ -528,14 +547,14 @@ fn ringing<L: Law>(raised: &Raised<'_, L>, factor: f64) -> f64 {
     let mut twin = TickLoop::new(task.plant, task.law, task.lag, raised.gains(factor), task.qpps).smooth();
     twin.start_steady(raised.speeds.0);
     let tick_s = task.law.tick_s();
-    let ticks = (raised.tried_s / tick_s) as usize;
+    let ticks = ((raised.turning_s + raised.tried_s) / tick_s) as usize;
     let to = if raised.part == Part::DerivativeByPositions {
         Setpoint::Position(raised.far, task.qpps)
     } else {
         Setpoint::Speed(raised.speeds.1)
     };
     let duties: Vec<(f64, f64)> = (0..ticks).map(|n| (n as f64 * tick_s, twin.tick(to, 0.0))).collect();
-    deviation(&duties[((1.0 - MARGIN.heard) * ticks as f64) as usize..])
+    deviation(&duties[(raised.heard_from_s() / tick_s) as usize..])
 }
 
 /// The highest share of gains that oscillate as they are at which they no longer do. `None` where no share is quiet and the duty falls with the gains

@@ -30,7 +30,7 @@ type Range = (f64, f64);
 
 /// Method, accepted %, good %, median cost. Gains are designed for the longest lag that is still likely, which costs some speed.
 const BOUNDS: [(&str, Range, Range, Range); 3] = [
-    ("velocity", (93.0, 100.0), (68.0, 95.0), (0.9, 1.3)),
+    ("velocity", (93.0, 100.0), (68.0, 100.0), (0.9, 1.3)),
     ("pd", (93.0, 100.0), (62.0, 95.0), (1.0, 1.45)),
     ("pid", (93.0, 100.0), (50.0, 90.0), (0.9, 1.45)),
 ];

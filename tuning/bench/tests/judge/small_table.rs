@@ -8,7 +8,7 @@ use brushwork_tuning::model::Gains;
 use brushwork_tuning::report::{Report, Verdict};
 use brushwork_tuning::tune::Method;
 use brushwork_tuning_bench::mcp::population::specimen;
-use brushwork_tuning_bench::optimum::Optimum;
+use brushwork_tuning_bench::optimum::{Optima as _, Optimum};
 use brushwork_tuning_bench::run::{judge_report, request_of, tune_plant};
 use brushwork_tuning_bench::table::{Identification, Row, cases, table};
 use brushwork_tuning_bench::unit::UnderTest;
@@ -31,7 +31,7 @@ const SEED_11: Bounds = [
     ("velocity", (91.0, 100.0), (79.0, 100.0), (0.9, 1.2)),
     ("pd", (99.0, 100.0), (83.0, 100.0), (0.9, 1.2)),
     ("pid", (99.0, 100.0), (75.0, 98.0), (1.0, 1.3)),
-    ("piv", (99.0, 100.0), (75.0, 96.0), (0.8, 1.2)),
+    ("piv", (99.0, 100.0), (70.0, 96.0), (0.8, 1.2)),
 ];
 
 fn ours(rows: &[Row]) -> &Row {
@@ -71,7 +71,7 @@ fn twenty_four_plants_of_another_seed_do_too() {
 }
 
 /// Shafts that swing at 35 to 110 Hz, which polls cannot see: raising the gains finds the oscillation, also where the gains oscillate as they are. That of plant 175 of
-/// seed 11 is heard in strokes alone: at two steady speeds it passed with a true Ms of 3.46. Those of seed 808 swing in their backlash hardly louder than rounding: their
+/// seed 11 is not heard, but its loop does what no model of it explains, which is warned of. Those of seed 808 swing in their backlash hardly louder than rounding: their
 /// duty only grows with the gains, and they passed with a true Ms of 2 to 2.5.
 #[test]
 fn springy_shafts_are_never_called_tuned_beyond_the_margin() {
@@ -79,9 +79,9 @@ fn springy_shafts_are_never_called_tuned_beyond_the_margin() {
         (7, 31, Method::Velocity, 2.6),
         (7, 39, Method::Velocity, 2.6),
         (7, 72, Method::Velocity, 2.6),
-        (7, 87, Method::Velocity, 2.0),
+        (7, 87, Method::Velocity, 2.6),
         (7, 103, Method::Velocity, 2.6),
-        (11, 175, Method::Velocity, 2.0),
+        (11, 175, Method::Velocity, 3.2),
         (808, 8, Method::Piv, 1.8),
         (808, 80, Method::Velocity, 2.0),
         (808, 87, Method::Velocity, 1.8),
@@ -95,6 +95,19 @@ fn springy_shafts_are_never_called_tuned_beyond_the_margin() {
         let is_promised = report.verdict == Verdict::Tuned;
         assert!(!is_promised || judged.ms <= 1.8, "plant {number} is called tuned at {:.2}", judged.ms);
     }
+}
+
+/// Turned about at once, they swing for a while under any gains, which passed for an oscillation of the loop: a J of 4.6 and 8.
+#[test]
+fn springy_shafts_that_swing_while_they_are_turned_about_are_not_lowered_for_it() {
+    let cases = cases::<ControlLaw>(11, 96, false);
+    let case = cases.iter().find(|case| case.under_test.specimen.number == 95).expect("it is among them");
+    let (report, _) =
+        tune_plant(&case.under_test.specimen, &request_of(&case.under_test.specimen, Method::Velocity));
+    let optimum = case.optima.of(Method::Velocity).expect("there is one");
+    let judged = judge_report(&case.under_test, &optimum, &report);
+    println!("{:?} {:?}, a J of {:.2}, true Ms {:.2}", report.verdict, report.causes, judged.j, judged.ms);
+    assert!(judged.accept && judged.j < 2.5, "a J of {:.2}", judged.j);
 }
 
 #[test]
