@@ -335,7 +335,7 @@ impl<'t, L: Law> Raised<'t, L> {
         latest.len() > MARGIN.turning_polls && shares.all(|share| share > low && share < high)
     }
 
-    /// How long after its begin a stay is listened to, s.
+    /// How long after its start a stay is listened to, s.
     fn heard_from_s(&self) -> f64 {
         self.turning_s + (1.0 - MARGIN.heard) * self.tried_s
     }

@@ -97,7 +97,7 @@ fn springy_shafts_are_never_called_tuned_beyond_the_margin() {
     }
 }
 
-/// Turned about at once, they swing for a while under any gains, which passed for an oscillation of the loop: a J of 4.6 and 8.
+/// Turned about at once, they swing for a while under any gains, which passed for an oscillation of the loop: a J of 4.6 then.
 #[test]
 fn springy_shafts_that_swing_while_they_are_turned_about_are_not_lowered_for_it() {
     let cases = cases::<ControlLaw>(11, 96, false);
