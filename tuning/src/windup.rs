@@ -57,21 +57,21 @@ pub(crate) fn windup_of<L: Law>(
 ) -> Result<Windup, Cause> {
     let plant = PlantModel { tau_s: task.plant.tau_s * found.tau_scale, ..task.plant };
     let task = &Task { plant, lag: found.lag, ..*task };
-    let told = told_by(task, gains, record, (record, 1.0));
-    if told != Windup::Open || excitation != Excitation::Free || plant.tau_s > WINDUP.quick_s {
+    let steady_duty = noise(record);
+    let told = told_by(task, gains, record, steady_duty);
+    let can_be_told = task.law.with_windup(Windup::Held).is_some() && excitation == Excitation::Free;
+    if told != Windup::Open || !can_be_told || plant.tau_s > WINDUP.quick_s {
         return Ok(told);
     }
-    let duty_per_speed = task.law.feed_forward() + gains.velocity.p;
-    let asked_before = record.setpoints.first().map_or(0.0, |first| duty_per_speed * first.1 / task.qpps);
-    let can_be_told = task.law.with_windup(Windup::Held).is_some();
-    let Some((firm, louder)) = firm_enough(task, gains, found)
-        .filter(|_| can_be_told && !guard.facts.writes_at_rest && asked_before <= WINDUP.asked_before)
-    else {
+    let asked = |gains: &Gains, speed: f64| (task.law.feed_forward() + gains.velocity.p) * speed / task.qpps;
+    if record.setpoints.first().is_some_and(|first| asked(gains, first.1) > WINDUP.asked_before) {
         return Ok(Windup::Open);
-    };
-    let share = (WINDUP.asked / (task.law.feed_forward() + firm.velocity.p)).min(WINDUP.most_speed);
+    }
+    let Some((firm, louder)) = firm_enough(task, gains, found) else { return Ok(Windup::Open) };
     rest(guard, plant.tau_s, task.qpps)?;
-    guard.write_gains(&task.law, &firm, task.qpps)?;
+    let registers = guard.write_gains(&task.law, &firm, task.qpps)?;
+    let firm = task.law.gains(&registers, task.qpps, false);
+    let share = (WINDUP.asked / asked(&firm, task.qpps)).min(WINDUP.most_speed);
     let from_s = guard.now_s();
     guard.poll(true)?;
     guard.speed(share * task.qpps)?;
@@ -79,7 +79,7 @@ pub(crate) fn windup_of<L: Law>(
     let to_s = guard.now_s();
     guard.duty(0.0)?;
     guard.write_gains(&task.law, gains, task.qpps)?;
-    Ok(told_by(task, &firm, &ClosedLoopRecord::of(guard, from_s, to_s), (record, louder)))
+    Ok(told_by(task, &firm, &ClosedLoopRecord::of(guard, from_s, to_s), louder * steady_duty))
 }
 
 /// Gains that ask for enough duty at the highest speed, and how much louder their duty is than that of the gains there are: these, or as much more of the proportional part.
@@ -100,17 +100,12 @@ fn firm_enough<L: Law>(task: &Task<L>, gains: &Gains, found: &LagFit) -> Option<
     is_calm.then(|| (firm, (noise(&firm) / noise(gains).max(f64::MIN_POSITIVE)).max(1.0)))
 }
 
-/// What a start tells, of a loop whose duty is so many times as noisy as in `steady`.
-fn told_by<L: Law>(
-    task: &Task<L>,
-    gains: &Gains,
-    start: &ClosedLoopRecord,
-    (steady, louder): (&ClosedLoopRecord, f64),
-) -> Windup {
+/// What a start tells, of a loop whose duty has that standard deviation at a steady speed.
+fn told_by<L: Law>(task: &Task<L>, gains: &Gains, start: &ClosedLoopRecord, steady_duty: f64) -> Windup {
     let misfit = |windup: Windup| -> Option<StartMisfit> {
         let law = task.law.with_windup(windup)?;
         let twin = TickLoop::new(task.plant, law, task.lag, *gains, task.qpps).smooth();
-        start.start_misfit(twin, &law, louder * noise(steady))
+        start.start_misfit(twin, &law, steady_duty)
     };
     let (Some(tracked), Some(held)) = (misfit(Windup::Tracked), misfit(Windup::Held)) else {
         return Windup::Open;
@@ -182,7 +177,7 @@ mod tests {
             let task = task(drive_limit);
             for windup in [Windup::Tracked, Windup::Held] {
                 let record = start(&task, &gains(3.0), windup);
-                assert_eq!(told_by(&task, &gains(3.0), &record, (&record, 1.0)), windup, "{drive_limit:?}");
+                assert_eq!(told_by(&task, &gains(3.0), &record, noise(&record)), windup, "{drive_limit:?}");
             }
         }
     }
@@ -191,9 +186,9 @@ mod tests {
     fn a_start_that_asks_for_less_and_one_that_neither_explains_tell_nothing() {
         let task = task(None);
         let record = start(&task, &gains(0.3), Windup::Held);
-        assert_eq!(told_by(&task, &gains(0.3), &record, (&record, 1.0)), Windup::Open);
+        assert_eq!(told_by(&task, &gains(0.3), &record, noise(&record)), Windup::Open);
         let other = start(&task, &gains(1.5), Windup::Held);
-        assert_eq!(told_by(&task, &gains(6.0), &other, (&record, 1.0)), Windup::Open);
+        assert_eq!(told_by(&task, &gains(6.0), &other, noise(&record)), Windup::Open);
     }
 
     #[test]
