@@ -74,7 +74,7 @@ thresholds! {
         /// How long the last move is watched when it should be over, in seconds.
         watch_s: f64 = 0.6,
         /// Misfit of the closed loop (reduced chi-square) above which nothing that the model says of a margin is believed: springy joints of the bench with a true Ms of
-        /// 2.6 to 3, for which 1.21 and less was predicted, have 1.76 and 2.4.
+        /// 2.6 to 3.1, for which 1.21 and less was predicted, have 1.76 and 2.4.
         no_model: f64 = 1.5,
         /// How often the gains may be lowered.
         most_back_offs: usize = 5,
