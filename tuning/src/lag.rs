@@ -184,20 +184,21 @@ pub fn fit_lag<L: Law>(
     }
     let tick_s = law.tick_s();
     let known = Known::new(stretches, plant, law, qpps, sd_ln_tau);
-    let found: Vec<(f64, Problem<'_, L>)> = STARTS.iter().filter_map(|start| known.fit(*start)).collect();
-    let best = found.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let found = known.fits();
+    let best = best_of(&found)?;
     let readings = known.readings.max(1) as f64;
     let doubted = |likely: f64, misfit: f64| likely * (misfit / readings).max(1.0);
     let doubt = |misfit: f64| doubted(LAG_WIDTHS.likely, misfit);
     let other_sum = if asked.law { with_other_sum(stretches, law) } else { None };
     let other_sum = other_sum.as_ref().map(|(law, gains)| Known::new(gains, plant, law, qpps, sd_ln_tau));
-    let by_other_sum = other_sum.as_ref().and_then(|other| other.fit_from(best.1.q));
-    let has_other_sum = by_other_sum.as_ref().is_some_and(|other| other.0 + doubt(other.0) < best.0);
-    let (known, found) = match other_sum.as_ref().filter(|_| has_other_sum) {
-        Some(other) => (other, found.iter().filter_map(|one| other.fit_from(one.1.q)).collect()),
-        None => (&known, found),
+    // From every start too: where the sum is taken otherwise than was asked about, the filter that fits best makes up for it, and from there no start leads to a delay.
+    let by_other_sum = other_sum.as_ref().map(Known::fits).unwrap_or_default();
+    let has_other_sum = best_of(&by_other_sum).is_some_and(|other| other.0 + doubt(other.0) < best.0);
+    let (known, found, by_other_sum) = match &other_sum {
+        Some(other) if has_other_sum => (other, by_other_sum, Vec::new()),
+        _ => (&known, found, by_other_sum),
     };
-    let best = found.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let best = best_of(&found)?;
     let chi_square = best.0 / readings;
     let least_filter_s = asked
         .filter
@@ -207,7 +208,7 @@ pub fn fit_lag<L: Law>(
         Some(sharper) => (sharper, found.iter().filter_map(|one| sharper.fit_from(one.1.q)).collect()),
         None => (known, found),
     };
-    let best = found.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let best = best_of(&found)?;
     let flanks = [Flanks::Rising, Flanks::Falling].map(|flanks| known.of_flanks(flanks));
     let told = flanks.iter().filter(|known| known.readings >= FLANKS.least_readings);
     let by_flank: Vec<(f64, Problem<'_, L>)> = told.filter_map(|known| known.fit_from(best.1.q)).collect();
@@ -225,7 +226,6 @@ pub fn fit_lag<L: Law>(
     let floor_s = if chi_square > soft { floor_s.hypot(of_soft_s) } else { floor_s };
     let (mut shortest, mut longest) = (f64::INFINITY, 0.0_f64);
     let likely = best.0 + doubt(best.0);
-    let by_other_sum = by_other_sum.filter(|_| !has_other_sum);
     let whole = found.iter().chain(&by_other_sum).filter(|other| other.0 <= likely && by_flank.len() != 1);
     for (_, problem) in whole.chain(by_flank.iter().copied()) {
         let total = known.parts(&problem.q).iter().sum::<f64>();
@@ -250,6 +250,11 @@ pub fn fit_lag<L: Law>(
         windup: Windup::Open,
         loudness: as_rounding(),
     })
+}
+
+/// The fit of the least misfit.
+fn best_of<'a, 'b, L: Law>(fits: &'b [(f64, Problem<'a, L>)]) -> Option<&'b (f64, Problem<'a, L>)> {
+    fits.iter().min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 /// The fits of rising and of falling flanks that tell of the lag in place of that of all, or beside it: the better one, where the model does not explain the other, since a load
@@ -327,6 +332,11 @@ impl<'a, L: Law> Known<'a, L> {
     fn of_flanks(&self, flanks: Flanks) -> Self {
         let readings = self.stretches.iter().flat_map(|stretch| readings(stretch, flanks)).sum();
         Self { readings, flanks, ..self.clone() }
+    }
+
+    /// The fits from each start, with their misfits.
+    fn fits(&self) -> Vec<(f64, Problem<'_, L>)> {
+        STARTS.iter().filter_map(|start| self.fit(*start)).collect()
     }
 
     /// The fit from a filter, s, and a delay, ticks, with its misfit.
