@@ -73,9 +73,10 @@ thresholds! {
         /// Misfit of the closed loop (reduced chi-square) above which its lag is not all that there may be: of 600 rigid motors (seeds 7, 11, 101 and 313) seven are above it, and arms with a
         /// springy shaft that were called tuned at a true Ms of 1.8 to 2.5 while it was 1.25 are at 1.14 to 1.27 (MEASURED.md, "The lag").
         unexplained: f64 = 1.1,
-        /// What the sum makes in a tick, as a share of P, from which on it is asked whether it is taken before or after the present error is added: below it the lags of both
-        /// are within 0.5 ms of each other on 26 motors of another make.
-        least_sum: f64 = 0.1,
+        /// What the sum makes in a tick, as a share of P, from which on it is asked whether it is taken before or after the present error is added, and from which on the lag of either
+        /// counts where the record does not tell: taken to be the other, at 0.09 the lag of two motors of another make was off by 1.1 ms; below 0.1 the lags of both are mostly within
+        /// 0.5 ms of each other (26 motors).
+        least_sum: (f64, f64) = (0.04, 0.1),
         /// Shares of the fitted filter that the record is asked about, shortest first.
         filter_shares: [f64; 4] = [0.0, 0.25, 0.5, 0.75],
         /// Step by which slopes are taken, in units of each parameter.
@@ -193,10 +194,14 @@ pub fn fit_lag<L: Law>(
     let other_sum = other_sum.as_ref().map(|(law, gains)| Known::new(gains, plant, law, qpps, sd_ln_tau));
     // From every start too: where the sum is taken otherwise than was asked about, the filter that fits best makes up for it, and from there no start leads to a delay.
     let by_other_sum = other_sum.as_ref().map(Known::fits).unwrap_or_default();
-    let has_other_sum = best_of(&by_other_sum).is_some_and(|other| other.0 + doubt(other.0) < best.0);
+    let (well, least_scale) = LAG_WIDTHS.well_explained;
+    let scaled = |scale: f64| scale.max(if scale < well { least_scale } else { 1.0 });
+    let has_other_sum = best_of(&by_other_sum)
+        .is_some_and(|other| other.0 + LAG_WIDTHS.likely * scaled(other.0 / readings) < best.0);
     let (known, found, by_other_sum) = match &other_sum {
         Some(other) if has_other_sum => (other, by_other_sum, Vec::new()),
-        _ => (&known, found, by_other_sum),
+        _ if in_a_tick(law, stretches) > LAG.least_sum.1 => (&known, found, by_other_sum),
+        _ => (&known, found, Vec::new()),
     };
     let best = best_of(&found)?;
     let chi_square = best.0 / readings;
@@ -215,7 +220,6 @@ pub fn fit_lag<L: Law>(
     let by_flank = told_apart(&by_flank);
     let best = by_flank.first().filter(|_| by_flank.len() == 1).copied().unwrap_or(best);
     let scale = best.0 / best.1.known.readings.max(1) as f64;
-    let (well, least_scale) = LAG_WIDTHS.well_explained;
     // How much of it is the filter is known less well, and a loop on the position meets the rest alone.
     let least_scale = if scale < well && !asked.filter { least_scale } else { 1.0 };
     let loud = 1.0 + (known.loudest() / LAG_WIDTHS.loud_duty).powi(2);
@@ -276,11 +280,18 @@ fn told_apart<'a, 'b, L: Law>(by_flank: &'b [(f64, Problem<'a, L>)]) -> Vec<&'b 
     }
 }
 
+/// What the sum makes of an error in a tick, as a share of what P makes of it.
+fn in_a_tick<L: Law>(law: &L, stretches: &[Stretch]) -> f64 {
+    stretches.first().map_or(0.0, |stretch| {
+        let velocity = stretch.gains.velocity;
+        velocity.i * law.tick_s() / velocity.p.max(f64::MIN_POSITIVE)
+    })
+}
+
 /// The law with the other sum, and what was polled with what its gains were under it; `None` where it makes no difference.
 fn with_other_sum<L: Law>(stretches: &[Stretch], law: &L) -> Option<(L, Vec<Stretch>)> {
     let gains = stretches.first()?.gains;
-    let (p, in_a_tick) = (gains.velocity.p, gains.velocity.i * law.tick_s());
-    let (other, _) = law.with_other_sum(&gains).filter(|_| in_a_tick > LAG.least_sum * p)?;
+    let (other, _) = law.with_other_sum(&gains).filter(|_| in_a_tick(law, stretches) > LAG.least_sum.0)?;
     let under_it =
         |stretch: &Stretch| Some(Stretch { gains: law.with_other_sum(&stretch.gains)?.1, ..stretch.clone() });
     Some((other, stretches.iter().map(under_it).collect::<Option<_>>()?))
