@@ -115,21 +115,38 @@ pub(crate) struct StartMisfit {
 
 /// Deviation of the duty about its trend in the second halves of the plateaus: the median of those that have five readings.
 pub(crate) fn noise(record: &ClosedLoopRecord) -> f64 {
+    median(plateaus(record).into_iter().map(|plateau| plateau.1)).map_or(0.02, f64::sqrt)
+}
+
+/// The root mean square of that of each setpoint.
+pub(crate) fn noise_of_setpoints(record: &ClosedLoopRecord) -> f64 {
+    let mut plateaus = plateaus(record);
+    plateaus.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let squares: Vec<f64> = plateaus
+        .chunk_by(|a, b| a.0 == b.0)
+        .filter_map(|of_one| median(of_one.iter().map(|plateau| plateau.1)))
+        .collect();
+    (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
+}
+
+/// The setpoint of each plateau that has five readings in its second half, and the variance of the duty about its trend there.
+fn plateaus(record: &ClosedLoopRecord) -> Vec<(f64, f64)> {
     let end = record.duties.last().map_or(0.0, |last| last.0);
     let ends = record.setpoints.iter().skip(1).map(|setpoint| setpoint.0).chain([end]);
-    let mut squares: Vec<f64> = record
-        .setpoints
-        .iter()
-        .zip(ends)
-        .filter_map(|(from, to)| {
-            let half = 0.5 * (from.0 + to);
-            let inside: Vec<(f64, f64)> =
-                record.duties.iter().copied().filter(|duty| duty.0 > half && duty.0 < to).collect();
-            (inside.len() >= 5).then(|| about_line(&inside))
-        })
-        .collect();
-    squares.sort_by(f64::total_cmp);
-    squares.get(squares.len() / 2).map_or(0.02, |square| square.sqrt())
+    let of_one = |(from, to): (&(f64, f64), f64)| {
+        let half = 0.5 * (from.0 + to);
+        let inside: Vec<(f64, f64)> =
+            record.duties.iter().copied().filter(|duty| duty.0 > half && duty.0 < to).collect();
+        (inside.len() >= 5).then(|| (from.1, about_line(&inside)))
+    };
+    record.setpoints.iter().zip(ends).filter_map(of_one).collect()
+}
+
+/// The upper one of the two in the middle; `None` of none.
+fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
 }
 
 /// How many counts and how many duties of a record are judged.
