@@ -41,6 +41,8 @@ thresholds! {
         sure: f64 = 3.0,
         /// Backlash that is reported is more than this share of the push.
         least_share: f64 = 0.04,
+        /// Student's t of 95 % for one degree of freedom to six: the seven pushes have four.
+        students_t: [f64; 6] = [12.71, 4.30, 3.18, 2.78, 2.57, 2.45],
         /// Standard error that rounding leaves, in counts.
         least_error_counts: f64 = 0.4,
     }
@@ -160,9 +162,10 @@ fn backlash_of(distances: &[(f64, f64)]) -> Backlash {
     let (short, error) = (a.0 - b.0, a.1.hypot(b.1).max(BACKLASH.least_error_counts));
     let is_sure =
         short > BACKLASH.least_counts && short > BACKLASH.sure * error && short > BACKLASH.least_share * a.0;
+    let freedom = (same.len() + turned.len()).saturating_sub(2).clamp(1, BACKLASH.students_t.len());
     Backlash {
         counts: if is_sure { short } else { 0.0 },
-        interval_counts: 1.96 * error,
+        interval_counts: BACKLASH.students_t[freedom - 1] * error,
         reversals: turned.len(),
     }
 }
