@@ -171,6 +171,8 @@ pub struct Asked {
     /// What of the law only a loop shows that turns the motor: whether it takes its sum before or after the present error is added to it, and what its integral does while the
     /// duty is cut. The latter the fit leaves open.
     pub law: bool,
+    /// Whether one more start may be made to see what the integral does: loops that act on the duty directly have none on the speed.
+    pub integral: bool,
 }
 
 /// Fits the lag. `sd_ln_tau` is how loosely the time constant is known.
@@ -620,7 +622,7 @@ mod tests {
                 &law,
                 40_000.0,
                 0.03,
-                Asked { filter: true, law: true },
+                Asked { filter: true, law: true, integral: false },
             )
             .expect("enough readings");
             let (got, wanted) = (found.lag.total_s(law.tick_s()), lag.total_s(law.tick_s()));
@@ -644,8 +646,15 @@ mod tests {
         let (sharp, ticked) = (about(&timed), about(&of_last_tick));
         assert!(sharp < 0.5 * LAG.sharp_counts && ticked > LAG.sharp_counts, "{sharp} and {ticked}");
         for stretch in [timed, of_last_tick] {
-            let found = fit_lag(&[stretch], &PLANT, &law, 40_000.0, 0.03, Asked { filter: true, law: true })
-                .expect("enough readings");
+            let found = fit_lag(
+                &[stretch],
+                &PLANT,
+                &law,
+                40_000.0,
+                0.03,
+                Asked { filter: true, law: true, integral: false },
+            )
+            .expect("enough readings");
             let (low_s, high_s) = found.interval_s;
             assert!((low_s..=high_s).contains(&lag.total_s(law.tick_s())), "{found:?}");
         }
@@ -665,7 +674,7 @@ mod tests {
                 &law,
                 40_000.0,
                 0.03,
-                Asked { filter: true, law: true },
+                Asked { filter: true, law: true, integral: false },
             )
             .expect("enough readings");
             assert!(found.least_filter_s.is_some_and(|found| least_s.contains(&found)), "{lag:?}: {found:?}");
@@ -676,7 +685,7 @@ mod tests {
     fn a_load_that_runs_ahead_while_the_motor_slows_down_does_not_lengthen_the_lag() {
         let lag = Lag { filter_s: 0.004, delay_ticks: 0.0 };
         let law = PlainLaw::default();
-        let asked = Asked { filter: true, law: true };
+        let asked = Asked { filter: true, law: true, integral: false };
         let rigid = known_record(lag);
         // An encoder behind backlash shows a slower speed some milliseconds late, and so does the duty that answers to it.
         let seen_late =

@@ -524,6 +524,7 @@ fn settle_lag<L: Law>(
     let asked = Asked {
         filter: request.method != Method::Velocity,
         law: request.probe_law && guard.facts.can_be_probed,
+        integral: matches!(request.method, Method::Velocity | Method::Piv),
     };
     let measured = match measure_lag(guard, &careful, &gains, sd_ln_tau, (request.excitation, asked)) {
         // Too little room for strokes.

@@ -121,8 +121,9 @@ pub fn measure_lag<L: Law>(
     let measured = plateau_activity(&ClosedLoopRecord::of(guard, settled, to_s));
     // Readings of the duty are whole steps of 1/32767, and a quiet loop tells nothing about its noise.
     let loudness = if noise > 0.004 { (measured / noise).clamp(0.9, 3.0) } else { 1.0 };
+    let may_start = asked.integral && excitation == Excitation::Free;
     let windup =
-        if asked.law { windup_of(guard, task, gains, &found, (&record, excitation))? } else { Windup::Open };
+        if asked.law { windup_of(guard, task, gains, &found, (&record, may_start))? } else { Windup::Open };
     Ok(Some(LagFit { loudness, windup, ..found }))
 }
 

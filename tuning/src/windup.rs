@@ -12,7 +12,6 @@ use crate::lag::LagFit;
 use crate::law::{Law, Windup};
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::model::{Gains, Pid, PlantModel};
-use crate::request::Excitation;
 use crate::thresholds::thresholds;
 use crate::ticks::TickLoop;
 
@@ -47,19 +46,19 @@ thresholds! {
     }
 }
 
-/// What it does, by the record of the lag's measurement, and by one more start where that tells nothing, the motor turns freely and is quick. The motor is braked at the end.
+/// What it does, by the record of the lag's measurement, and by one more start where that tells nothing, it may be made and the motor is quick. The motor is braked at the end.
 pub(crate) fn windup_of<L: Law>(
     guard: &mut ExperimentGuard<'_, L>,
     task: &Task<L>,
     gains: &Gains,
     found: &LagFit,
-    (record, excitation): (&ClosedLoopRecord, Excitation),
+    (record, may_start): (&ClosedLoopRecord, bool),
 ) -> Result<Windup, Cause> {
     let plant = PlantModel { tau_s: task.plant.tau_s * found.tau_scale, ..task.plant };
     let task = &Task { plant, lag: found.lag, ..*task };
     let steady_duty = noise(record);
     let told = told_by(task, gains, record, steady_duty);
-    let can_be_told = task.law.with_windup(Windup::Held).is_some() && excitation == Excitation::Free;
+    let can_be_told = task.law.with_windup(Windup::Held).is_some() && may_start;
     if told != Windup::Open || !can_be_told || plant.tau_s > WINDUP.quick_s {
         return Ok(told);
     }
