@@ -81,7 +81,7 @@ fn springy_shafts_are_never_called_tuned_beyond_the_margin() {
         (7, 72, Method::Velocity, 2.6),
         (7, 87, Method::Velocity, 2.4),
         (7, 103, Method::Velocity, 2.6),
-        (11, 175, Method::Velocity, 3.15),
+        (11, 175, Method::Velocity, 3.3),
         (808, 8, Method::Piv, 1.8),
         (808, 80, Method::Velocity, 2.0),
         (808, 87, Method::Velocity, 1.8),
