@@ -336,8 +336,7 @@ fn whether_the_sum_is_taken_before_the_error_is_added_is_found_out() {
 }
 
 /// Quick motors whose duty comes a tick late behind a filter of 4 ms, at 300 Hz. Asked about a sum that is taken otherwise, all of the lag was taken for a filter on the speed, which a loop
-/// on the position does not have, and cascades were called tuned at a true Ms of 1.81 here and of up
-/// to 2.07 on a foreign controller.
+/// on the position does not have, and cascades were called tuned at a true Ms of 1.81 here and of up to 1.98 on a foreign controller.
 #[test]
 fn a_late_duty_is_not_taken_for_a_filter_where_the_sum_is_taken_otherwise() {
     let mut split = 0;
