@@ -199,7 +199,7 @@ pub fn fit_lag<L: Law>(
     let doubt = |misfit: f64| doubted(LAG_WIDTHS.likely, misfit);
     let other_sum = if asked.law { with_other_sum(stretches, law) } else { None };
     let other_sum = other_sum.as_ref().map(|(law, gains)| Known::new(gains, plant, law, qpps, sd_ln_tau));
-    // From every start too: where the sum is taken otherwise than was asked about, the filter that fits best makes up for it, and from there no start leads to a delay.
+    // From every start too: where the sum is taken otherwise than was asked about, the filter that fits best makes up for it, and from there no way leads to a delay.
     let by_other_sum = other_sum.as_ref().map(Known::fits).unwrap_or_default();
     let (well, least_scale) = LAG_WIDTHS.well_explained;
     let scaled = |scale: f64| scale.max(if scale < well { least_scale } else { 1.0 });
@@ -328,18 +328,7 @@ impl<'a, L: Law> Known<'a, L> {
         let (factor, least, most) = LAG_PRIORS.tau;
         Self {
             stretches,
-            noises: stretches
-                .iter()
-                .map(|stretch| {
-                    let heard = noise(&stretch.record);
-                    heard.hypot(RECORD.duty).max(rounding_between_plateaus(
-                        plant,
-                        law,
-                        stretch,
-                        (heard, qpps),
-                    ))
-                })
-                .collect(),
+            noises: stretches.iter().map(|stretch| duty_noise(plant, law, stretch, qpps)).collect(),
             plant: *plant,
             law: *law,
             qpps,
@@ -524,24 +513,24 @@ impl<L: Law> LeastSquaresProblem<f64, Dyn, U6> for Problem<'_, L> {
     }
 }
 
-/// What the rounding of counts does to the duty while the speed changes, where that is more than is `heard` on most plateaus: at a speed of nearly whole counts in a tick the count of
-/// each tick is the same, so that such a plateau is quiet and tells nothing of it.
-fn rounding_between_plateaus<L: Law>(
-    plant: &PlantModel,
-    law: &L,
-    stretch: &Stretch,
-    (heard, qpps): (f64, f64),
-) -> f64 {
+/// Noise of the duty of a stretch. At a speed of whole counts in a tick, or nearly so, the count of each tick is the same, so that such a plateau is quiet and does not tell what rounding
+/// does while the speed changes.
+fn duty_noise<L: Law>(plant: &PlantModel, law: &L, stretch: &Stretch, qpps: f64) -> f64 {
     let tick_s = law.tick_s();
     let rounding = |lag: Lag| {
         LoopPlant::new(DiscretePlant::of(plant, tick_s), law, lag).margins(&stretch.gains, qpps).noise_duty
     };
-    if goes_by_whole_counts(law) {
-        return rounding(law.facts().usual_lag);
-    }
+    let heard = noise(&stretch.record);
     let of_setpoints = noise_of_setpoints(&stretch.record);
-    // What is louder than rounding can be is a shaft that rings.
-    if heard < LAG.quiet * of_setpoints { of_setpoints.min(rounding(Lag::default())) } else { 0.0 }
+    let between_plateaus = if goes_by_whole_counts(law) {
+        rounding(law.facts().usual_lag)
+    } else if heard < LAG.quiet * of_setpoints {
+        // What is louder than rounding can be is a shaft that rings.
+        of_setpoints.min(rounding(Lag::default()))
+    } else {
+        0.0
+    };
+    heard.hypot(RECORD.duty).max(between_plateaus)
 }
 
 /// Whether each speed that can be commanded is a whole number of counts in a tick.
@@ -607,6 +596,12 @@ mod tests {
         Stretch { record, gains: GAINS, before: None }
     }
 
+    /// The fit of a record of [`PLANT`].
+    fn fitted(stretch: Stretch) -> LagFit {
+        let asked = Asked { filter: true, law: true, integral: false };
+        fit_lag(&[stretch], &PLANT, &PlainLaw::default(), 40_000.0, 0.03, asked).expect("enough readings")
+    }
+
     #[test]
     fn a_known_lag_is_found_again_and_lies_in_its_interval() {
         let law = PlainLaw::default();
@@ -616,15 +611,7 @@ mod tests {
             Lag { filter_s: 0.010, delay_ticks: 0.0 },
             Lag { filter_s: 0.010, delay_ticks: 1.0 },
         ] {
-            let found = fit_lag(
-                &[known_record(lag)],
-                &PLANT,
-                &law,
-                40_000.0,
-                0.03,
-                Asked { filter: true, law: true, integral: false },
-            )
-            .expect("enough readings");
+            let found = fitted(known_record(lag));
             let (got, wanted) = (found.lag.total_s(law.tick_s()), lag.total_s(law.tick_s()));
             assert!((got - wanted).abs() < 0.0025, "{got} s instead of {wanted} s: {found:?}");
             assert!(found.chi_square < 1.5, "{found:?}");
@@ -646,15 +633,7 @@ mod tests {
         let (sharp, ticked) = (about(&timed), about(&of_last_tick));
         assert!(sharp < 0.5 * LAG.sharp_counts && ticked > LAG.sharp_counts, "{sharp} and {ticked}");
         for stretch in [timed, of_last_tick] {
-            let found = fit_lag(
-                &[stretch],
-                &PLANT,
-                &law,
-                40_000.0,
-                0.03,
-                Asked { filter: true, law: true, integral: false },
-            )
-            .expect("enough readings");
+            let found = fitted(stretch);
             let (low_s, high_s) = found.interval_s;
             assert!((low_s..=high_s).contains(&lag.total_s(law.tick_s())), "{found:?}");
         }
@@ -662,21 +641,12 @@ mod tests {
 
     #[test]
     fn a_lag_without_a_filter_is_not_put_down_to_one_and_a_long_filter_is_seen() {
-        let law = PlainLaw::default();
         for (lag, least_s) in [
             (Lag { filter_s: 0.0, delay_ticks: 0.5 }, 0.0..=0.0),
             (Lag { filter_s: 0.0, delay_ticks: 1.0 }, 0.0..=0.0),
             (Lag { filter_s: 0.010, delay_ticks: 0.0 }, 0.004..=0.010),
         ] {
-            let found = fit_lag(
-                &[known_record(lag)],
-                &PLANT,
-                &law,
-                40_000.0,
-                0.03,
-                Asked { filter: true, law: true, integral: false },
-            )
-            .expect("enough readings");
+            let found = fitted(known_record(lag));
             assert!(found.least_filter_s.is_some_and(|found| least_s.contains(&found)), "{lag:?}: {found:?}");
         }
     }
@@ -685,7 +655,6 @@ mod tests {
     fn a_load_that_runs_ahead_while_the_motor_slows_down_does_not_lengthen_the_lag() {
         let lag = Lag { filter_s: 0.004, delay_ticks: 0.0 };
         let law = PlainLaw::default();
-        let asked = Asked { filter: true, law: true, integral: false };
         let rigid = known_record(lag);
         // An encoder behind backlash shows a slower speed some milliseconds late, and so does the duty that answers to it.
         let seen_late =
@@ -698,7 +667,7 @@ mod tests {
         };
         let behind_backlash = Stretch { record, ..rigid.clone() };
         for stretch in [rigid, behind_backlash] {
-            let found = fit_lag(&[stretch], &PLANT, &law, 40_000.0, 0.03, asked).expect("enough readings");
+            let found = fitted(stretch);
             let (low_s, high_s) = found.interval_s;
             assert!((low_s..=high_s).contains(&lag.total_s(law.tick_s())), "{found:?}");
             let off_s = found.lag.total_s(law.tick_s()) - lag.total_s(law.tick_s());

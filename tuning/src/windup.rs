@@ -28,7 +28,7 @@ thresholds! {
         apart_limited: (f64, f64) = (2.0, 4.0),
         /// How much worse it has to be at least: three standard deviations.
         surely: f64 = 9.0,
-        /// Time constant of the motor up to which one more start is made where the first did not ask for more than full duty, in seconds: of a slower one it takes seconds, and its loops ask
+        /// Time constant of the motor up to which one more start is made where the first did not ask for much more than full duty, in seconds: of a slower one it takes seconds, and its loops ask
         /// for that at the first already.
         quick_s: f64 = 0.3,
         /// The duty that it asks for, as a multiple of full: at the least, and at the most, where the gains make that of the highest speed.

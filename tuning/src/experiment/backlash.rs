@@ -188,6 +188,8 @@ mod tests {
         let found = backlash_of(&pushes);
         assert!((found.counts - 8.33).abs() < 0.1, "{found:?}");
         assert_eq!(found.reversals, 3);
+        // Variances of 1/3 and 1 over three pushes each; Student's t of four degrees of freedom.
+        assert!((found.interval_counts - 2.78 * (4.0_f64 / 9.0).sqrt()).abs() < 1e-9, "{found:?}");
         let noisy =
             pushes.map(|(turn, distance)| (turn, if turn > 0.0 { distance - 6.0 * turn } else { distance }));
         assert!(backlash_of(&noisy).counts < 4.0);
