@@ -7,7 +7,7 @@ use crate::design::{Design, Goal, Task, deadzone};
 use crate::experiment::rest;
 use crate::experiment_guard::{ExperimentGuard, Point};
 use crate::lag::{Asked, LagFit, fit_lag};
-use crate::law::{Law, Windup};
+use crate::law::Law;
 use crate::linear::{DiscretePlant, LoopPlant};
 use crate::margin::{MARGIN, headroom, may_be_short, scaled};
 use crate::model::{Gains, Pid};
@@ -19,7 +19,6 @@ use crate::request::{Excitation, Identification, Method, Request};
 use crate::score::{horizon_s, position_step};
 use crate::thresholds::thresholds;
 use crate::ticks::{TickLoop, velocity_test};
-use crate::windup::windup_of;
 
 thresholds! {
     /// The trial of the gains on the machine: its steps, what passes, and how gains are lowered.
@@ -97,21 +96,22 @@ thresholds! {
     }
 }
 
-/// Runs setpoint steps with gains that are already written, and fits the lag. `None` where the record says nothing.
-pub fn measure_lag<L: Law>(
+/// Runs setpoint steps with gains that are already written, and fits the lag to them and to what was measured before. `None` where the records say nothing.
+pub(crate) fn measure_lag<L: Law>(
     guard: &mut ExperimentGuard<'_, L>,
     task: &Task<L>,
     gains: &Gains,
     sd_ln_tau: f64,
     (excitation, asked): (Excitation, Asked),
+    stretches: &mut Vec<Stretch>,
 ) -> Result<Option<LagFit>, Cause> {
     let (from_s, to_s) = match excitation {
         Excitation::Free => run_steps(guard, task, gains)?,
         Excitation::Window(width) => run_strokes(guard, task, gains, width)?,
     };
     let record = ClosedLoopRecord::of(guard, from_s, to_s);
-    let stretch = Stretch { record: record.clone(), gains: *gains, before: None };
-    let Some(found) = fit_lag(&[stretch], &task.plant, &task.law, task.qpps, sd_ln_tau, asked) else {
+    stretches.push(Stretch { record, gains: *gains, before: None });
+    let Some(found) = fit_lag(stretches, &task.plant, &task.law, task.qpps, sd_ln_tau, asked) else {
         return Ok(None);
     };
     let noise = LoopPlant::new(DiscretePlant::of(&task.plant, task.law.tick_s()), &task.law, found.lag)
@@ -121,10 +121,7 @@ pub fn measure_lag<L: Law>(
     let measured = plateau_activity(&ClosedLoopRecord::of(guard, settled, to_s));
     // Readings of the duty are whole steps of 1/32767, and a quiet loop tells nothing about its noise.
     let loudness = if noise > 0.004 { (measured / noise).clamp(0.9, 3.0) } else { 1.0 };
-    let may_start = asked.integral && excitation == Excitation::Free;
-    let windup =
-        if asked.law { windup_of(guard, task, gains, &found, (&record, may_start))? } else { Windup::Open };
-    Ok(Some(LagFit { loudness, windup, ..found }))
+    Ok(Some(LagFit { loudness, ..found }))
 }
 
 /// Whether an axis stays where it is while it is off, as far as that matters: one that its load moves would leave its travel between two strokes.

@@ -4,7 +4,7 @@
 //! duty than there is, and the duty that is read back in the meantime, and as long as the integral takes to forget it, is another one under each.
 
 use crate::cause::Cause;
-use crate::closed_loop_record::{ClosedLoopRecord, StartMisfit, noise};
+use crate::closed_loop_record::{ClosedLoopRecord, StartMisfit, Stretch, noise};
 use crate::design::Task;
 use crate::experiment::rest;
 use crate::experiment_guard::ExperimentGuard;
@@ -46,26 +46,32 @@ thresholds! {
     }
 }
 
-/// What it does, by the record of the lag's measurement, and by one more start where that tells nothing, it may be made and the motor is quick. The motor is braked at the end.
+/// What it does, by the records of the lag's measurement, and by one more start where they tell nothing, it may be made and the motor is quick. The motor is braked at the end.
 pub(crate) fn windup_of<L: Law>(
     guard: &mut ExperimentGuard<'_, L>,
     task: &Task<L>,
-    gains: &Gains,
     found: &LagFit,
-    (record, may_start): (&ClosedLoopRecord, bool),
+    (stretches, may_start): (&[Stretch], bool),
 ) -> Result<Windup, Cause> {
     let plant = PlantModel { tau_s: task.plant.tau_s * found.tau_scale, ..task.plant };
     let task = &Task { plant, lag: found.lag, ..*task };
-    let steady_duty = noise(record);
-    let told = told_by(task, gains, record, steady_duty);
+    let told = |stretch: &Stretch| told_by(task, &stretch.gains, &stretch.record, noise(&stretch.record));
+    let told = stretches.iter().rev().map(told).find(|told| *told != Windup::Open);
     let can_be_told = task.law.with_windup(Windup::Held).is_some() && may_start;
-    if told != Windup::Open || !can_be_told || plant.tau_s > WINDUP.quick_s {
-        return Ok(told);
+    if told.is_some() || !can_be_told || plant.tau_s > WINDUP.quick_s {
+        return Ok(told.unwrap_or_default());
     }
     let asked = |gains: &Gains, speed: f64| (task.law.feed_forward() + gains.velocity.p) * speed / task.qpps;
-    if record.setpoints.first().is_some_and(|first| asked(gains, first.1) > WINDUP.asked_before) {
+    let asked_before = |stretch: &Stretch| {
+        let first = stretch.record.setpoints.first();
+        first.is_some_and(|first| asked(&stretch.gains, first.1) > WINDUP.asked_before)
+    };
+    let Some(Stretch { record, gains, .. }) =
+        stretches.last().filter(|_| !stretches.iter().any(asked_before))
+    else {
         return Ok(Windup::Open);
-    }
+    };
+    let steady_duty = noise(record);
     let Some((firm, louder)) = firm_enough(task, gains, found) else { return Ok(Windup::Open) };
     rest(guard, plant.tau_s, task.qpps)?;
     let registers = guard.write_gains(&task.law, &firm, task.qpps)?;
