@@ -125,6 +125,18 @@ fn a_lag_that_would_cost_a_position_loop_much_is_measured_again() {
     }
 }
 
+/// A robot base that takes longer to turn about than the part of a stroke that is not listened to: its PD was lowered to a J of 1.66 for that.
+#[test]
+fn a_heavy_motor_that_still_turns_about_is_no_loop_that_oscillates() {
+    let cases = cases::<ControlLaw>(11, 59, false);
+    let case = cases.iter().find(|case| case.under_test.specimen.number == 58).expect("it is there");
+    let request = request_of(&case.under_test.specimen, Method::Pd);
+    let (report, _) = tune_plant(&case.under_test.specimen, &request);
+    let judged = judge_report(&case.under_test, &case.optima.of(Method::Pd).expect("there is one"), &report);
+    println!("{:?} {:?}, a J of {:.2}, true Ms {:.2}", report.verdict, report.causes, judged.j, judged.ms);
+    assert!(report.verdict == Verdict::Tuned && judged.good, "a J of {:.2}", judged.j);
+}
+
 #[test]
 fn a_replay_of_the_record_gives_the_same_report_to_the_last_bit_also_after_a_file() {
     for (number, method) in [(0, Method::Velocity), (3, Method::Piv), (7, Method::Pd)] {
