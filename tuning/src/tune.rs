@@ -599,15 +599,19 @@ fn worth_more<L: Law>(
     task: &Task<L>,
     found: &LagFit,
 ) -> Option<Gains> {
-    if request.method == Method::Velocity || request.excitation != Excitation::Free {
+    // What a rule gives does not go by the longest lag.
+    let is_designed = request.identification == Identification::Fit && request.method != Method::Velocity;
+    if !is_designed || request.excitation != Excitation::Free {
         return None;
     }
     let task = with_lag(*task, found);
     let whole = with_known_filter(request, report, task);
     let cost = |task: &Task<L>| Some(design_for(request.method, task)?.score.cost(POSITION_OVERSHOOT));
     let likely = cost(&Task { worst_lag: whole.lag, ..whole })?;
-    let is_worth_it = cost(&whole).is_none_or(|cost| cost > TUNE.worth_more * likely);
-    design_velocity(&task).filter(|_| is_worth_it).map(|design| design.gains)
+    if cost(&whole).is_some_and(|cost| cost <= TUNE.worth_more * likely) {
+        return None;
+    }
+    design_velocity(&task).map(|design| design.gains)
 }
 
 /// The task of a loop that stays quiet where the controller filters nothing: one count must not throw its duty to and fro, which would tell nothing of the lag.

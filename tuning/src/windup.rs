@@ -66,11 +66,10 @@ pub(crate) fn windup_of<L: Law>(
         let first = stretch.record.setpoints.first();
         first.is_some_and(|first| asked(&stretch.gains, first.1) > WINDUP.asked_before)
     };
-    let Some(Stretch { record, gains, .. }) =
-        stretches.last().filter(|_| !stretches.iter().any(asked_before))
-    else {
+    if stretches.iter().any(asked_before) {
         return Ok(Windup::Open);
-    };
+    }
+    let Some(Stretch { record, gains, .. }) = stretches.last() else { return Ok(Windup::Open) };
     let steady_duty = noise(record);
     let Some((firm, louder)) = firm_enough(task, gains, found) else { return Ok(Windup::Open) };
     rest(guard, plant.tau_s, task.qpps)?;
