@@ -96,6 +96,7 @@ fn gains_of_level(found: &Fit, level: f64) {
         least_integral_s: 0.0,
         most_overshoot: USUAL_OVERSHOOT,
         most_speed_gain: None,
+        sd_coulomb_duty: 0.0,
     };
     let Some(design) = design_velocity(&task) else {
         println!("{level:5}  no gains keep this level's bounds: is the encoder too coarse?");

@@ -284,6 +284,7 @@ fn design<L: LawProbe>(
             guard.facts.longest_lag
         },
         goal: Goal::of_level(request.level),
+        sd_coulomb_duty: found.fit.sd_coulomb,
         noise_factor: (probe.noise_counts / TUNE.rounded_counts).max(1.0),
         ..Task::new(found.fit.model, request.law, guard.facts.usual_lag, found.qpps)
     };

@@ -98,6 +98,7 @@ mod tests {
             least_integral_s: 0.0,
             most_overshoot: crate::design::USUAL_OVERSHOOT,
             most_speed_gain: None,
+            sd_coulomb_duty: 0.0,
         }
     }
 

@@ -37,6 +37,41 @@ mod tests {
         Task { goal: Goal::of_level(level), ..Task::new(plant, PlainLaw::default(), lag, 28_000.0) }
     }
 
+    /// Over 12 motors whose friction is known to a twelfth: what gains cost in the mean of as much less, the same and more of it, beside gains for the likely friction alone.
+    #[test]
+    fn gains_that_come_out_well_by_where_friction_stops_them_are_not_taken() {
+        type Method = fn(&Task<PlainLaw>) -> Option<Design>;
+        let methods: [(&str, Method); 2] = [("pd", design_pd), ("pid", design_pid)];
+        for (name, method) in methods {
+            let mut worth = 0.0;
+            for n in 0..12 {
+                let n = f64::from(n);
+                let (gain, tau_s, coulomb) = (4_000.0 + 350.0 * n, 0.05 + 0.008 * n, 0.06 + 0.004 * n);
+                let of = |coulomb_duty: f64| PlantModel {
+                    gain_counts_per_s: gain,
+                    tau_s,
+                    coulomb_duty,
+                    ..task(50.0).plant
+                };
+                let qpps = gain * (1.0 - coulomb);
+                let known = Task { plant: of(coulomb), qpps, ..task(50.0) };
+                let doubted = Task { sd_coulomb_duty: coulomb / 12.0, ..known };
+                let mean = |task: &Task<PlainLaw>| {
+                    let gains = method(task).expect("gains").gains;
+                    let cost = |share: f64| {
+                        let plant = of(share * coulomb);
+                        let test = position_test_and_end(&plant, &task.law, task.lag, &gains, qpps);
+                        test.0.cost(POSITION_OVERSHOOT)
+                    };
+                    [-2.0, 0.0, 2.0].map(|by| cost(1.0 + by / 12.0)).iter().sum::<f64>()
+                };
+                worth += (mean(&known) / mean(&doubted)).ln() / 12.0;
+            }
+            println!("{name}: {:.3} times as much", worth.exp());
+            assert!(worth.exp() > 1.02, "{name}: {:.3} times as much", worth.exp());
+        }
+    }
+
     #[test]
     fn every_method_keeps_its_goal_at_every_level_and_stiffer_is_never_slower() {
         type Method = fn(&Task<PlainLaw>) -> Option<Design>;

@@ -53,6 +53,9 @@ impl Goal {
 pub struct Task<L: Law> {
     /// The motor.
     pub plant: PlantModel,
+    /// How well the friction of the motor is known, as a standard deviation of its duty; 0 where it is taken to be known.
+    #[serde(default)]
+    pub sd_coulomb_duty: f64,
     /// The controller.
     pub law: L,
     /// The lag beyond hold and count difference: the most likely one.
@@ -83,6 +86,7 @@ impl<L: Law> Task<L> {
     pub fn new(plant: PlantModel, law: L, lag: Lag, qpps: f64) -> Self {
         Self {
             plant,
+            sd_coulomb_duty: 0.0,
             law,
             lag,
             worst_lag: lag,

@@ -277,7 +277,7 @@ fn task_of<L: Law>(request: &Request<L>, found: &Found) -> Task<L> {
     }
     let qpps = model.gain_counts_per_s * (1.0 - model.coulomb_duty);
     let worst_lag = Lag { filter_s: 0.0, delay_ticks: worst_s / law.tick_s() };
-    Task { worst_lag, goal, ..Task::new(model, law, lag, qpps) }
+    Task { worst_lag, goal, sd_coulomb_duty: found.fit.sd_coulomb, ..Task::new(model, law, lag, qpps) }
 }
 
 /// A design whose registers keep their margin at every rate that is as likely.
