@@ -67,7 +67,6 @@ mod tests {
                 };
                 worth += (mean(&known) / mean(&doubted)).ln() / 12.0;
             }
-            println!("{name}: {:.3} times as much", worth.exp());
             assert!(worth.exp() > 1.02, "{name}: {:.3} times as much", worth.exp());
         }
     }

@@ -287,7 +287,7 @@ fn candidate<L: Law>(task: &Task<L>, gains: Gains) -> Candidate {
     let test = |plant: &PlantModel| position_test_and_end(plant, &task.law, task.lag, &gains, task.qpps);
     let (score, end) = test(&task.plant);
     let cost_of = |score: Score| score.cost(POSITION_OVERSHOOT);
-    // Where friction stops a motor is a matter of chance, and what it leaves of a move is most of the cost: gains that come out well by it alone do not on the machine.
+    // Where friction stops a motor is a matter of chance, and what it leaves of a move is much of the cost: gains that come out well by it alone do not on the machine.
     let others = doubtful(task, &gains);
     let costs = others.iter().map(|plant| cost_of(test(plant).0));
     let mean = (cost_of(score) + costs.sum::<f64>()) / (1 + others.len()) as f64;
