@@ -100,7 +100,7 @@ impl Cascade {
     ) -> f64 {
         let gains = gains.velocity;
         let error = setpoint - seen.speed;
-        let slope = (error - self.last_error) / tick_s;
+        let slope = if gains.d == 0.0 { 0.0 } else { (error - self.last_error) / tick_s };
         self.last_error = error;
         self.integral += error * tick_s;
         let forward = feed_forward * setpoint;

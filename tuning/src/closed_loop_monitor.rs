@@ -4,7 +4,7 @@
 //! again as readings scatter of late, and anything at all where a new setpoint fell between them. From these, and from bounds of the
 //! model, follow the least and the most that can have been counted over a stretch.
 
-use crate::model::PlantModel;
+use crate::model::{Decay, PlantModel};
 use crate::poll::Point;
 use crate::thresholds::{Scaled, thresholds};
 use std::collections::VecDeque;
@@ -129,6 +129,13 @@ pub(crate) enum Before {
     Driven,
 }
 
+/// The exponentials of a step with the longest and the shortest time constant.
+#[derive(Default)]
+pub(crate) struct Decays {
+    pub(crate) slow: Decay,
+    pub(crate) quick: Decay,
+}
+
 /// The polls of a stretch and the speed before it.
 struct Stretch {
     from: Point,
@@ -229,8 +236,8 @@ impl ClosedLoopMonitor {
             full,
             self.tick_s,
         );
-        let least = self.least_distance(stretch, duties, 1.0);
-        let most = -self.least_distance(stretch, duties, -1.0);
+        let [least, back] = self.least_distances(stretch, duties);
+        let most = -back;
         moved >= least - margin && moved <= most + margin
     }
 
@@ -253,28 +260,30 @@ impl ClosedLoopMonitor {
             + CLOSED_LOOP.scatters * beside[beside.len() / 2]
     }
 
-    /// The least distance that the motor can have gone in a direction; one backwards is negative.
-    fn least_distance(&self, stretch: &Stretch, duties: &Duties<'_>, direction: f64) -> f64 {
-        let mut speed = stretch.speed_before * direction;
-        let mut distance = 0.0;
+    /// The least distance that the motor can have gone forwards, and backwards; one the other way is negative.
+    fn least_distances(&self, stretch: &Stretch, duties: &Duties<'_>) -> [f64; 2] {
+        let mut ways = [1.0, -1.0].map(|direction| (direction, stretch.speed_before * direction, 0.0));
+        let mut decays = Decays::default();
         let mut t = stretch.before_s;
         let longest = CLOSED_LOOP.step_s.max((stretch.to.t - t) / CLOSED_LOOP.steps);
         while t < stretch.to.t - 1e-9 {
             let step = longest.min(stretch.to.t - t);
             let range = duties.range(t + 0.5 * step);
-            let duty = if direction > 0.0 { range.0 } else { -range.1 };
-            let next = self.least_speed(speed, duty, direction, step);
-            if t + step > stretch.from.t {
-                distance += 0.5 * (speed + next) * step.min(t + step - stretch.from.t);
+            for (direction, speed, distance) in &mut ways {
+                let duty = if *direction > 0.0 { range.0 } else { -range.1 };
+                let next = self.least_speed(*speed, duty, *direction, step, &mut decays);
+                if t + step > stretch.from.t {
+                    *distance += 0.5 * (*speed + next) * step.min(t + step - stretch.from.t);
+                }
+                *speed = next;
             }
-            speed = next;
             t += step;
         }
-        distance
+        ways.map(|way| way.2)
     }
 
     /// The lowest speed after a step, in the direction looked at.
-    fn least_speed(&self, speed: f64, duty: f64, direction: f64, step: f64) -> f64 {
+    fn least_speed(&self, speed: f64, duty: f64, direction: f64, step: f64, decays: &mut Decays) -> f64 {
         let model = &self.model;
         let full = model.gain_counts_per_s;
         let share = if duty > 0.0 { 1.0 - CLOSED_LOOP.gain_doubt } else { 1.0 + CLOSED_LOOP.gain_doubt };
@@ -299,9 +308,12 @@ impl ClosedLoopMonitor {
         } else {
             (push + CLOSED_LOOP.friction.0 * model.coulomb_duty).min(0.0)
         };
-        let tau_s =
-            model.tau_s * if force > 0.0 { CLOSED_LOOP.tau_spread.1 } else { CLOSED_LOOP.tau_spread.0 };
-        let next = speed + full * force * (1.0 - (-step / tau_s).exp());
+        let (spread, decay) = if force > 0.0 {
+            (CLOSED_LOOP.tau_spread.1, &mut decays.slow)
+        } else {
+            (CLOSED_LOOP.tau_spread.0, &mut decays.quick)
+        };
+        let next = speed + full * force * (1.0 - decay.of(-step / (model.tau_s * spread)));
         // Friction stops a motor, but does not turn it.
         if speed > 0.0 && next < 0.0 && push >= -friction { 0.0 } else { next }
     }

@@ -359,7 +359,7 @@ impl<'a, L: Law> Known<'a, L> {
     /// The same from parameters.
     fn fit_from(&self, start: Vector6<f64>) -> Option<(f64, Problem<'_, L>)> {
         let search = LevenbergMarquardt::new().with_patience(4).with_ftol(LAG.enough).with_xtol(LAG.enough);
-        let (problem, report) = search.minimize(Problem { known: self, q: start });
+        let (problem, report) = search.minimize(Problem::at(self, start));
         report.objective_function.is_finite().then_some((2.0 * report.objective_function, problem))
     }
 
@@ -465,16 +465,21 @@ impl<'a, L: Law> Known<'a, L> {
 struct Problem<'a, L: Law> {
     known: &'a Known<'a, L>,
     q: Vector6<f64>,
+    /// The residuals there.
+    here: DVector<f64>,
 }
 
-impl<L: Law> Problem<'_, L> {
+impl<'a, L: Law> Problem<'a, L> {
+    fn at(known: &'a Known<'a, L>, q: Vector6<f64>) -> Self {
+        Self { known, q, here: known.residuals(&q) }
+    }
+
     fn slopes(&self) -> DMatrix<f64> {
-        let here = self.known.residuals(&self.q);
         let columns: Vec<DVector<f64>> = (0..UNITS.len())
             .map(|n| {
                 let mut up = self.q;
                 up[n] += LAG.slope_step;
-                (self.known.residuals(&up) - &here) / LAG.slope_step
+                (self.known.residuals(&up) - &self.here) / LAG.slope_step
             })
             .collect();
         DMatrix::from_columns(&columns)
@@ -496,7 +501,7 @@ impl<L: Law> LeastSquaresProblem<f64, Dyn, U6> for Problem<'_, L> {
     type ParameterStorage = Owned<f64, U6>;
 
     fn set_params(&mut self, q: &Vector6<f64>) {
-        self.q.copy_from(q);
+        *self = Self::at(self.known, *q);
     }
 
     fn params(&self) -> Vector6<f64> {
@@ -504,7 +509,7 @@ impl<L: Law> LeastSquaresProblem<f64, Dyn, U6> for Problem<'_, L> {
     }
 
     fn residuals(&self) -> Option<DVector<f64>> {
-        Some(self.known.residuals(&self.q))
+        Some(self.here.clone())
     }
 
     fn jacobian(&self) -> Option<nalgebra::OMatrix<f64, Dyn, U6>> {

@@ -97,10 +97,12 @@ impl Seen<'_> {
     /// What the current limit leaves of the duty, down and up.
     #[must_use]
     pub fn duty_bounds(&self) -> (f64, f64) {
-        let speed = self.motion.speed;
-        let emf = speed / self.plant.gain_counts_per_s;
-        let down = self.plant.push_limit(-1.0, speed).map_or(-1.0, |limit| emf - limit);
-        let up = self.plant.push_limit(1.0, speed).map_or(1.0, |limit| emf + limit);
+        if self.plant.drive_limit.is_none() {
+            return (-1.0, 1.0);
+        }
+        let emf = self.motion.speed / self.plant.gain_counts_per_s;
+        let down = self.plant.push_limit_at(-1.0, emf).map_or(-1.0, |limit| emf - limit);
+        let up = self.plant.push_limit_at(1.0, emf).map_or(1.0, |limit| emf + limit);
         (down.clamp(-1.0, 1.0), up.clamp(-1.0, 1.0))
     }
 }

@@ -36,6 +36,13 @@ impl DiscretePlant {
 
     fn response(&self, z: Complex<f64>) -> Complex<f64> {
         let n = self.a.nrows();
+        if n == 2 {
+            // Cramer's rule: a first-order motor is worked out again for each step of a fit.
+            let (a, b, c) = (&self.a, &self.b, &self.c);
+            let [free_0, free_1] = [z - a[(0, 0)], z - a[(1, 1)]];
+            let (x_0, x_1) = (free_1 * b[0] + a[(0, 1)] * b[1], free_0 * b[1] + a[(1, 0)] * b[0]);
+            return (x_0 * c[0] + x_1 * c[1]) / (free_0 * free_1 - a[(0, 1)] * a[(1, 0)]);
+        }
         let shifted = DMatrix::from_fn(n, n, |r, c| {
             Complex::new(-self.a[(r, c)], 0.0) + if r == c { z } else { Complex::new(0.0, 0.0) }
         });
@@ -114,25 +121,25 @@ impl LoopPlant {
     /// Maximum sensitivity and noise of a loop; the loop must be stable for them to mean anything.
     #[must_use]
     pub fn margins(&self, gains: &Gains, qpps: f64) -> Margins {
-        let mut ms: f64 = 0.0;
+        let mut nearest_sqr = f64::INFINITY;
         let mut noise = 0.0;
         let mut before: Option<(f64, f64)> = None;
         for n in 0..self.omega.len() {
             let by = self.controllers(gains, n);
             let open = self.open(by, qpps, n);
             let (by_speed, by_position) = by;
-            let sensitivity = (open + 1.0).norm().recip();
-            ms = ms.max(sensitivity);
+            let distance_sqr = (open + 1.0).norm_sqr();
+            nearest_sqr = nearest_sqr.min(distance_sqr);
             // What a rounding error of the count does to the duty.
-            let path = (by_speed * self.slope[n] * self.filter[n] + by_position) / qpps * sensitivity;
-            let power = path.norm_sqr();
+            let path = (by_speed * self.slope[n] * self.filter[n] + by_position) / qpps;
+            let power = path.norm_sqr() / distance_sqr;
             if let Some((w, p)) = before {
                 noise += 0.5 * (p + power) * (self.omega[n] - w);
             }
             before = Some((self.omega[n], power));
         }
         let noise_duty = (noise * self.tick_s / std::f64::consts::PI / 12.0).sqrt();
-        Margins { ms, noise_duty }
+        Margins { ms: nearest_sqr.sqrt().recip(), noise_duty }
     }
 
     /// Whether the maximum sensitivity is at most `bound`, as [`LoopPlant::margins`] has it, without the noise.
@@ -140,9 +147,9 @@ impl LoopPlant {
         // A square above this is above the bound's whatever was rounded.
         let clear = 1.000_001 / (bound * bound);
         (0..self.omega.len()).all(|n| {
-            let difference = self.open(self.controllers(gains, n), qpps, n) + 1.0;
+            let distance_sqr = (self.open(self.controllers(gains, n), qpps, n) + 1.0).norm_sqr();
             // A root is taken only where it may matter. What is no number counts as little as it does in a maximum.
-            difference.norm_sqr() > clear || difference.norm().recip().max(0.0) <= bound
+            distance_sqr > clear || distance_sqr.sqrt().recip().max(0.0) <= bound
         })
     }
 

@@ -5,7 +5,7 @@
 //! constant. A stretch outside them is a suspicion, which the diagnosis turns into a cause.
 
 use crate::cause::Cause;
-use crate::closed_loop_monitor::{Before, ClosedLoopMonitor};
+use crate::closed_loop_monitor::{Before, ClosedLoopMonitor, Decays};
 use crate::current_silence::{CurrentSilence, SILENCE};
 use crate::model::PlantModel;
 use crate::open_loop_record::OPEN_LOOP;
@@ -363,8 +363,8 @@ impl MotorMonitor {
         if self.gain <= 0.0 {
             return Ok(());
         }
-        let least = self.least_distance(stretch, 1.0, tau);
-        let most = -self.least_distance(stretch, -1.0, tau);
+        let [least, back] = self.least_distances(stretch, tau);
+        let most = -back;
         if moved < least - margin || moved > most + margin {
             return Err(Cause::Stalled);
         }
@@ -408,29 +408,31 @@ impl MotorMonitor {
         !self.in_loop && (steady || rising) && stretch.speed_before * direction > 0.0
     }
 
-    /// The least distance that the motor can have gone in a direction: with the lowest duty, the most friction, and the time constant
-    /// that suits it. One backwards is negative.
-    fn least_distance(&self, stretch: &Stretch, direction: f64, tau: (f64, f64)) -> f64 {
-        let mut speed = stretch.speed_before * direction;
-        let mut distance = 0.0;
-        let mut t = stretch.from.t - 0.5 * MONITOR.speed_s;
+    /// The least distance that the motor can have gone forwards, and backwards: with the lowest duty, the most friction, and the time constant
+    /// that suits it. One the other way is negative.
+    fn least_distances(&self, stretch: &Stretch, tau: (f64, f64)) -> [f64; 2] {
+        let mut ways = [1.0, -1.0].map(|direction| (direction, stretch.speed_before * direction, 0.0));
+        let mut decays = Decays::default();
         // The speed before was that of the middle of its own time.
+        let mut t = stretch.from.t - 0.5 * MONITOR.speed_s;
         while t < stretch.to.t {
             let step = MONITOR.step_s.min(stretch.to.t - t);
             let range = self.duty_range(t + 0.5 * step);
-            let duty = if direction > 0.0 { range.0 - self.load_duty } else { self.load_duty - range.1 };
-            let next = self.least_speed(speed, duty, step, tau);
-            if t + step > stretch.from.t {
-                distance += 0.5 * (speed + next) * step.min(t + step - stretch.from.t);
+            for (direction, speed, distance) in &mut ways {
+                let duty = if *direction > 0.0 { range.0 - self.load_duty } else { self.load_duty - range.1 };
+                let next = self.least_speed(*speed, duty, step, tau, &mut decays);
+                if t + step > stretch.from.t {
+                    *distance += 0.5 * (*speed + next) * step.min(t + step - stretch.from.t);
+                }
+                *speed = next;
             }
-            speed = next;
             t += step;
         }
-        distance
+        ways.map(|way| way.2)
     }
 
     /// The lowest speed after a step.
-    fn least_speed(&self, speed: f64, duty: f64, step: f64, tau: (f64, f64)) -> f64 {
+    fn least_speed(&self, speed: f64, duty: f64, step: f64, tau: (f64, f64), decays: &mut Decays) -> f64 {
         let gain = if duty > 0.0 { MONITOR.least_gain * self.gain } else { self.gain / MONITOR.least_gain };
         let mut drive = gain * duty - speed;
         if let Some(limit) = self.drive_limit {
@@ -441,8 +443,8 @@ impl MotorMonitor {
         let force = if speed > 0.0 { drive - friction } else { drive };
         let held = speed == 0.0 && force >= 0.0;
         let force = if held { (force - friction).max(0.0) } else { force };
-        let tau_s = if force > 0.0 { tau.1 } else { tau.0 };
-        let next = speed + force * (1.0 - (-step / tau_s).exp());
+        let (tau_s, decay) = if force > 0.0 { (tau.1, &mut decays.slow) } else { (tau.0, &mut decays.quick) };
+        let next = speed + force * (1.0 - decay.of(-step / tau_s));
         // Friction stops a motor, but does not turn it.
         let stops = speed > 0.0 && next < 0.0 && gain * duty >= -friction;
         if stops { 0.0 } else { next }

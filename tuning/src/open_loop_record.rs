@@ -1,7 +1,7 @@
 //! The record of an open-loop run as a fit needs it, and the counts that a model predicts for it.
 
 use crate::duty_limiter::{DutyLimit, Limiter, LimiterState};
-use crate::model::{Motion, PlantModel};
+use crate::model::{Decay, Motion, PlantModel};
 use crate::poll::{Drive, Input, Point};
 use crate::thresholds::thresholds;
 
@@ -132,8 +132,15 @@ impl OpenLoopRecord {
             Some(_) => PlantModel { drive_limit: None, ..*model },
             None => *model,
         };
-        let mut state =
-            Cursor { t: start, duty: 0.0, goal: 0.0, motion, limiter, limit: LimiterState::default() };
+        let mut state = Cursor {
+            t: start,
+            duty: 0.0,
+            goal: 0.0,
+            motion,
+            limiter,
+            limit: LimiterState::default(),
+            decay: Decay::default(),
+        };
         let mut next = 0;
         while let Some(&(t, duty)) = self.duties.get(next)
             && t <= start
@@ -183,7 +190,7 @@ fn advance(actuation: &Actuation, model: &PlantModel, state: &mut Cursor, to: f6
             state.duty = if gap.abs() <= slew * step * 1.000_001 { state.goal } else { state.duty + change };
             (step.max(1e-9), middle)
         };
-        model.step(&mut state.motion, duty, step);
+        model.step_on(&mut state.motion, duty, step, &mut state.decay);
         state.t += step;
     }
 }
@@ -194,7 +201,7 @@ fn advance_limited(model: &PlantModel, limiter: &Limiter, state: &mut Cursor, to
         let step = (to - state.t).min(limiter.step_s());
         let duty = Limiter::left(&state.limit, state.duty);
         let before = state.motion.speed;
-        model.step(&mut state.motion, duty, step);
+        model.step_on(&mut state.motion, duty, step, &mut state.decay);
         let emf = 0.5 * (before + state.motion.speed) / model.gain_counts_per_s;
         limiter.see(&mut state.limit, duty - emf, step);
         state.t += step;
@@ -208,4 +215,5 @@ struct Cursor {
     motion: Motion,
     limiter: Option<Limiter>,
     limit: LimiterState,
+    decay: Decay,
 }

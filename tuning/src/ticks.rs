@@ -152,25 +152,73 @@ impl<L: Law> TickLoop<L> {
     }
 }
 
-/// The velocity test on the model: the score and the root mean square of the last quarter's speed ripple over the step.
+/// What the time-weighted errors of a test may still cost: a search gives up a candidate as soon as it is certain to be dearer than what it has.
+struct Budget {
+    /// The most that the weighted sum may be.
+    most: f64,
+    /// The sum so far.
+    spent: f64,
+}
+
+impl Budget {
+    /// Of a [`Score::cost`] in a test of so many ticks and of a step.
+    fn of(cost: f64, ticks: usize, tick_s: f64, step: f64) -> Self {
+        let horizon_s = ticks as f64 * tick_s;
+        // What rounding makes of the sum is no reason to give up.
+        Self { most: 1.000_001 * cost * step.abs() * horizon_s * horizon_s / tick_s, spent: 0.0 }
+    }
+
+    /// The values of a half of the test, tick by tick; `None` where they cost more than is left.
+    fn half<T>(
+        &mut self,
+        ticks: usize,
+        tick_s: f64,
+        mut run: impl FnMut() -> (f64, T),
+    ) -> Option<Vec<(f64, T)>> {
+        let mut values = Vec::with_capacity(ticks);
+        for n in 0..ticks {
+            let (error, more) = run();
+            self.spent += (n as f64 + 0.5) * tick_s * error.abs();
+            if self.spent > self.most {
+                return None;
+            }
+            values.push((error, more));
+        }
+        Some(values)
+    }
+}
+
+/// The velocity test on the model: the score.
 #[must_use]
 pub fn velocity_test<L: Law>(plant: &PlantModel, law: &L, lag: Lag, gains: &Gains, qpps: f64) -> Score {
+    velocity_test_within(plant, law, lag, gains, qpps, f64::INFINITY).unwrap_or_default()
+}
+
+/// The same, given up where its cost is certain to be above `most`.
+pub(crate) fn velocity_test_within<L: Law>(
+    plant: &PlantModel,
+    law: &L,
+    lag: Lag,
+    gains: &Gains,
+    qpps: f64,
+    most: f64,
+) -> Option<Score> {
     let tick_s = law.tick_s();
     let ticks = (horizon_s(plant.tau_s) / tick_s) as usize;
     let top = plant.gain_counts_per_s;
     let (low, high) = (VELOCITY_STEP.0 * top, VELOCITY_STEP.1 * top);
     let mut twin = TickLoop::new(*plant, *law, lag, *gains, qpps);
     twin.start_steady(low);
-    let mut run = |load: f64| -> Vec<f64> {
-        (0..ticks)
-            .map(|_| {
-                twin.tick(Setpoint::Speed(high), load);
-                high - twin.motion.speed
-            })
-            .collect()
+    let mut budget = Budget::of(most, ticks, tick_s, high - low);
+    let mut run = |load: f64| {
+        budget.half(ticks, tick_s, || {
+            twin.tick(Setpoint::Speed(high), load);
+            (high - twin.motion.speed, ())
+        })
     };
-    let (after_step, after_load) = (run(0.0), run(LOAD_STEP_DUTY));
-    Score::of(&after_step, &after_load, tick_s, high - low, 0.05)
+    let errors = |half: Vec<(f64, ())>| -> Vec<f64> { half.into_iter().map(|(error, ())| error).collect() };
+    let (after_step, after_load) = (errors(run(0.0)?), errors(run(LOAD_STEP_DUTY)?));
+    Some(Score::of(&after_step, &after_load, tick_s, high - low, 0.05))
 }
 
 /// What still goes on in the last third of a test, after the step or after the load, whichever is more.
@@ -191,25 +239,37 @@ pub(crate) fn position_test_and_end<L: Law>(
     gains: &Gains,
     qpps: f64,
 ) -> (Score, Residual) {
+    position_test_within(plant, law, lag, gains, qpps, f64::INFINITY).unwrap_or_default()
+}
+
+/// The same, given up where its cost is certain to be above `most`.
+pub(crate) fn position_test_within<L: Law>(
+    plant: &PlantModel,
+    law: &L,
+    lag: Lag,
+    gains: &Gains,
+    qpps: f64,
+    most: f64,
+) -> Option<(Score, Residual)> {
     let tick_s = law.tick_s();
     let ticks = (horizon_s(plant.tau_s) / tick_s) as usize;
     let step = position_step(plant.gain_counts_per_s, plant.tau_s);
     let mut twin = TickLoop::new(*plant, *law, lag, *gains, qpps);
-    let mut run = |load: f64| -> (Vec<f64>, Vec<f64>) {
-        (0..ticks)
-            .map(|_| {
-                let duty = twin.tick(Setpoint::Position(step, qpps), load);
-                (step - twin.motion.position, duty)
-            })
-            .unzip()
+    let mut budget = Budget::of(most, ticks, tick_s, step);
+    let mut run = |load: f64| -> Option<(Vec<f64>, Vec<f64>)> {
+        let half = budget.half(ticks, tick_s, || {
+            let duty = twin.tick(Setpoint::Position(step, qpps), load);
+            (step - twin.motion.position, duty)
+        })?;
+        Some(half.into_iter().unzip())
     };
-    let (after_step, after_load) = (run(0.0), run(LOAD_STEP_DUTY));
+    let (after_step, after_load) = (run(0.0)?, run(LOAD_STEP_DUTY)?);
     let late = ticks * 7 / 10;
     let residual = Residual {
         duty: (spread(&after_step.1[late..]), spread(&after_load.1[late..])),
         range_counts: range(&after_step.0[late..]).max(range(&after_load.0[late..])),
     };
-    (Score::of(&after_step.0, &after_load.0, tick_s, step, 0.02f64.max(3.0 / step)), residual)
+    Some((Score::of(&after_step.0, &after_load.0, tick_s, step, 0.02f64.max(3.0 / step)), residual))
 }
 
 /// Standard deviation.
@@ -223,4 +283,51 @@ fn spread(values: &[f64]) -> f64 {
 fn range(values: &[f64]) -> f64 {
     let ends = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
     (ends.1 - ends.0).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Pid;
+    use crate::plain_law::PlainLaw;
+    use crate::score::{POSITION_OVERSHOOT, VELOCITY_OVERSHOOT};
+
+    const PLANT: PlantModel = PlantModel {
+        gain_counts_per_s: 10_000.0,
+        tau_s: 0.1,
+        coulomb_duty: 0.05,
+        load_duty: 0.01,
+        drive_limit: Some(0.5),
+        brake_limit: None,
+        sag: 0.02,
+    };
+
+    #[test]
+    fn a_test_is_given_up_only_where_it_costs_more_than_it_may() {
+        let (law, lag, qpps) = (PlainLaw::default(), Lag::default(), 9_000.0);
+        let mut given_up = 0;
+        for p in [0.5, 2.0, 8.0, 20.0] {
+            let velocity = Gains { velocity: Pid { p, i: 20.0 * p, d: 0.0 }, ..Gains::default() };
+            let position =
+                Gains { position: Some(Pid { p: 4.0 * p, i: 0.0, d: 0.2 * p }), ..Gains::default() };
+            let by_speed = |most| velocity_test_within(&PLANT, &law, lag, &velocity, qpps, most);
+            let by_place = |most| position_test_within(&PLANT, &law, lag, &position, qpps, most);
+            let (whole, (moved, end)) = (
+                velocity_test(&PLANT, &law, lag, &velocity, qpps),
+                by_place(f64::INFINITY).expect("no bound"),
+            );
+            let (cost, of_move) = (whole.cost(VELOCITY_OVERSHOOT), moved.cost(POSITION_OVERSHOOT));
+            for share in [1.0, 1.1, 3.0] {
+                assert_eq!(by_speed(share * cost), Some(whole), "P {p}");
+                assert_eq!(by_place(share * of_move), Some((moved, end)), "P {p}");
+            }
+            for share in [0.9, 0.5, 0.01] {
+                let is_dearer = |score: Score, most: f64| score.setpoint + score.load > most;
+                assert_eq!(by_speed(share * cost).is_none(), is_dearer(whole, share * cost), "P {p}");
+                assert_eq!(by_place(share * of_move).is_none(), is_dearer(moved, share * of_move), "P {p}");
+                given_up += usize::from(by_speed(share * cost).is_none());
+            }
+        }
+        assert!(given_up >= 8, "{given_up}");
+    }
 }

@@ -6,7 +6,7 @@ use crate::law::{Law, other_windup};
 use crate::model::{Gains, Lag, Pid, PlantModel};
 use crate::score::{POSITION_OVERSHOOT, Score, position_step};
 use crate::thresholds::thresholds;
-use crate::ticks::position_test_and_end;
+use crate::ticks::position_test_within;
 
 thresholds! {
     /// How the gains of a position are bounded and searched.
@@ -107,7 +107,7 @@ pub fn design_pid<L: Law>(task: &Task<L>) -> Option<Design> {
         .into_iter()
         .flatten()
         .map(|best| refine(&loops, task, best, &DIRECT))
-        .fold(None, better)?;
+        .min_by(|one, other| one.cost.total_cmp(&other.cost))?;
     let best = stepped(&loops, task, best, true)?;
     finish(&loops, task, Some(best).filter(|best| loops.stable(task, &best.gains)))
 }
@@ -125,7 +125,7 @@ fn with_integral<L: Law>(loops: &Loops, task: &Task<L>, plain: Candidate) -> Opt
             for max_integral in sum_bounds(task, &pid) {
                 let gains = Gains { position: Some(pid), max_integral, ..base };
                 if loops.within(task, &gains).is_some() && loops.stable(task, &gains) {
-                    best = better(best, candidate(task, gains));
+                    best = better(best, |most| candidate(task, gains, most));
                 }
             }
         }
@@ -159,13 +159,13 @@ fn stepped<L: Law>(loops: &Loops, task: &Task<L>, best: Candidate, has_integral:
         let has_any = gains.position.is_some_and(|position| position.i != 0.0);
         (has_integral || !has_any) && loops.within(task, gains).is_some() && loops.stable(task, gains)
     };
-    let mut found = Some(candidate(task, best.gains)).filter(|rounded| is_allowed(&rounded.gains));
+    let mut found = candidate(task, best.gains, f64::INFINITY).filter(|rounded| is_allowed(&rounded.gains));
     let mut at = best.gains;
     for _ in 0..POSITION.most_steps {
         let before = found.as_ref().map_or(f64::INFINITY, |best| best.cost);
         for gains in task.law.steps_around(&at, task.qpps) {
             if is_allowed(&gains) {
-                found = better(found, candidate(task, gains));
+                found = better(found, |most| candidate(task, gains, most));
             }
         }
         match &found {
@@ -207,7 +207,7 @@ pub fn design_piv<L: Law>(task: &Task<L>) -> Option<Design> {
                 |p: f64| Gains { position: Some(Pid { p, i: 0.0, d: 0.0 }), ..pi(top * share) };
             let Some(highest) = ascend(&loops, task, 300.0, with_position) else { continue };
             for outer in POSITION.shares {
-                best = better(best, candidate(task, with_position(highest * outer)));
+                best = better(best, |most| candidate(task, with_position(highest * outer), most));
             }
         }
     }
@@ -222,7 +222,7 @@ fn search_pd<L: Law>(loops: &Loops, task: &Task<L>, base: Gains) -> Option<Candi
         let pd = |p: f64| Gains { position: Some(Pid { p, i: 0.0, d: p * time_s }), ..base };
         let Some(highest) = ascend(loops, task, 2_000.0, pd) else { continue };
         for share in POSITION.shares {
-            best = better(best, candidate(task, pd(highest * share)));
+            best = better(best, |most| candidate(task, pd(highest * share), most));
         }
     }
     best
@@ -239,10 +239,7 @@ fn refine<L: Law>(loops: &Loops, task: &Task<L>, mut best: Candidate, how: &Refi
                 if loops.within(task, &gains).is_none() || !loops.stable(task, &gains) {
                     break;
                 }
-                let other = candidate(task, gains);
-                if other.cost >= best.cost {
-                    break;
-                }
+                let Some(other) = candidate(task, gains, best.cost) else { break };
                 best = other;
             }
         }
@@ -282,26 +279,41 @@ impl Move {
     }
 }
 
-fn candidate<L: Law>(task: &Task<L>, gains: Gains) -> Candidate {
+/// Gains that cost less than `most`.
+fn candidate<L: Law>(task: &Task<L>, gains: Gains, most: f64) -> Option<Candidate> {
     let gains = task.law.rounded(&gains, task.qpps);
-    let test = |plant: &PlantModel| position_test_and_end(plant, &task.law, task.lag, &gains, task.qpps);
-    let (score, end) = test(&task.plant);
+    let test = |plant: &PlantModel, law: &L, most: f64| {
+        position_test_within(plant, law, task.lag, &gains, task.qpps, most)
+    };
     let cost_of = |score: Score| score.cost(POSITION_OVERSHOOT);
     // Where friction stops a motor is a matter of chance, and what it leaves of a move is much of the cost: gains that come out well by it alone do not on the machine.
     let others = doubtful(task, &gains);
-    let costs = others.iter().map(|plant| cost_of(test(plant).0));
-    let mean = (cost_of(score) + costs.sum::<f64>()) / (1 + others.len()) as f64;
-    let held = other_windup(&task.law)
-        .filter(|_| gains.velocity.i > 0.0)
-        .map_or(0.0, |law| position_test_and_end(&task.plant, &law, task.lag, &gains, task.qpps).0.overshoot);
-    let excess = (score.overshoot.max(held) - POSITION.overshoot_cap).max(0.0)
-        + 0.5 * (end.duty.0.max(end.duty.1) - POSITION.late_duty_cap).max(0.0);
+    let tests = (1 + others.len()) as f64;
+    let (score, end) = test(&task.plant, &task.law, tests * most)?;
     let step = position_step(task.plant.gain_counts_per_s, task.plant.tau_s);
     let allowed = (POSITION.late_distance_cap * step).max(POSITION.late_counts_cap);
     let creeping = (POSITION.late_distance_cost * (end.range_counts / allowed - 1.0))
         .clamp(0.0, POSITION.late_distance_most);
-    let cost = mean * (1.0 + 50.0 * excess) * (1.0 + creeping);
-    Candidate { gains, score, cost }
+    let raised = |cost: f64, overshoot: f64| {
+        let excess = (overshoot - POSITION.overshoot_cap).max(0.0)
+            + 0.5 * (end.duty.0.max(end.duty.1) - POSITION.late_duty_cap).max(0.0);
+        cost / tests * (1.0 + 50.0 * excess) * (1.0 + creeping)
+    };
+    // What follows only adds to it.
+    let mut sum = cost_of(score);
+    for plant in &others {
+        let left = most / raised(1.0, score.overshoot) - sum;
+        sum += cost_of(test(plant, &task.law, left)?.0);
+    }
+    if raised(sum, score.overshoot) >= most {
+        return None;
+    }
+    let held = other_windup(&task.law)
+        .filter(|_| gains.velocity.i > 0.0)
+        .and_then(|law| test(&task.plant, &law, f64::INFINITY))
+        .map_or(0.0, |(held, _)| held.overshoot);
+    let cost = raised(sum, score.overshoot.max(held));
+    (cost < most).then_some(Candidate { gains, score, cost })
 }
 
 /// The motor with as much less and more friction as it may have; none where that is known, or where an integral of the speed overcomes it.

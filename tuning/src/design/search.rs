@@ -95,12 +95,12 @@ pub(super) struct Candidate {
     pub cost: f64,
 }
 
-/// The cheaper of two.
-pub(super) fn better(best: Option<Candidate>, other: Candidate) -> Option<Candidate> {
-    match best {
-        Some(best) if best.cost <= other.cost => Some(best),
-        _ => Some(other),
-    }
+/// What there is, or what costs less than it.
+pub(super) fn better(
+    best: Option<Candidate>,
+    other: impl FnOnce(f64) -> Option<Candidate>,
+) -> Option<Candidate> {
+    other(best.as_ref().map_or(f64::INFINITY, |best| best.cost)).or(best)
 }
 
 /// What the best candidate promises.

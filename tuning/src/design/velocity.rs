@@ -6,7 +6,7 @@ use crate::law::{Law, other_windup};
 use crate::model::{Gains, Pid, PlantModel};
 use crate::score::{Score, VELOCITY_OVERSHOOT};
 use crate::thresholds::thresholds;
-use crate::ticks::velocity_test;
+use crate::ticks::{velocity_test, velocity_test_within};
 
 thresholds! {
     /// How the gains of a velocity loop are searched.
@@ -67,7 +67,8 @@ fn refine<L: Law>(loops: &Loops, task: &Task<L>, mut best: Candidate) -> Candida
 /// Gains that cost less than `best`: the cost as likely, and half as much again of what it would be on a somewhat quicker motor with the worst lag.
 fn cheaper<L: Law>(task: &Task<L>, gains: Gains, best: Option<&Candidate>) -> Option<Candidate> {
     let gains = task.law.rounded(&gains, task.qpps);
-    let score = velocity_test(&task.plant, &task.law, task.lag, &gains, task.qpps);
+    let most = best.map_or(f64::INFINITY, |best| best.cost);
+    let score = velocity_test_within(&task.plant, &task.law, task.lag, &gains, task.qpps, most)?;
     // A quick motor meets no other bound: what its level changes is how far a step may go past its end.
     let pace = task.goal.pace();
     let capped = |score: &Score, overshoot: f64| {
@@ -75,13 +76,13 @@ fn cheaper<L: Law>(task: &Task<L>, gains: Gains, best: Option<&Candidate>) -> Op
         let beyond = (excess - VELOCITY.most_excess).max(0.0);
         score.cost(pace * VELOCITY_OVERSHOOT) * (1.0 + 30.0 * excess + 300.0 * beyond)
     };
-    let most = best.map_or(f64::INFINITY, |best| best.cost);
     // What follows only adds to it.
-    if capped(&score, score.overshoot) >= most {
+    let left = most - capped(&score, score.overshoot);
+    if left <= 0.0 {
         return None;
     }
     let other = PlantModel { tau_s: 0.88 * task.plant.tau_s, ..task.plant };
-    let worse = velocity_test(&other, &task.law, task.worst_lag, &gains, task.qpps);
+    let worse = velocity_test_within(&other, &task.law, task.worst_lag, &gains, task.qpps, 2.0 * left)?;
     let by_worse = 0.5 * capped(&worse, worse.overshoot);
     if capped(&score, score.overshoot) + by_worse >= most {
         return None;
