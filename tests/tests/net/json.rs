@@ -24,41 +24,56 @@ const SCRIPT: &str = "x var word\nfor x = 1 to 10\nnext\nend\n";
 const FAULTY: &str = "x var word\nfor y = 1 to 10\nnext\nend\n";
 
 /// File, what is held, arguments: "SCRIPT", "FAULTY" and "PROFILE" stand for files of these.
-const COMMANDS: &[(&str, Of, &str)] = &[
-    ("status-mcp266", Kinds, "status --json"),
-    ("status-mcp266-4", Kinds, "status --json --connect sim:mcp266,generation=4"),
-    ("status-roboclaw", Kinds, "status --json --connect sim:roboclaw-2x7a"),
-    ("status-mind", Kinds, "status --json --connect sim:motion-mind-3,mode=4"),
-    ("stop-mcp266", Kinds, "stop --json"),
-    ("stop-mind", Kinds, "stop --json --connect sim:motion-mind-3,mode=4"),
-    ("drive-mcp266", Kinds, "drive --json --duty 10 --for 0.3"),
-    ("drive-mind", Kinds, "drive --json --connect sim:motion-mind-3,mode=4 --speed 500 --for 0.3"),
-    ("firmware-info", Values, "firmware info --json"),
-    ("protocol-mcp", Values, "protocol --json"),
-    ("protocol-mind", Values, "protocol --json --family motion-mind"),
-    ("reference", Values, "settings reference --json"),
-    ("read-mcp266", Values, "settings read --json"),
-    ("read-mcp266-4", Values, "settings read --json --connect sim:mcp266,generation=4"),
-    ("read-roboclaw", Values, "settings read --json --connect sim:roboclaw-2x7a"),
-    ("read-mind", Values, "settings read --json --connect sim:motion-mind-3,mode=4"),
-    ("write-mcp266", Kinds, "settings write --json motor1.velocity.qpps=12000 --yes"),
-    ("write-dry-mcp266", Values, "settings write --json motor1.velocity.qpps=12000 --dry-run"),
-    ("write-mind", Kinds, "settings write --json --connect sim:motion-mind-3,mode=4 register.pterm=77 --yes"),
-    ("diff-mcp266", Values, "settings diff --json PROFILE"),
-    ("save-mcp266", Kinds, "settings save --json --yes"),
-    ("defaults-mcp266", Kinds, "settings defaults --json --yes"),
-    ("reload-mcp266", Kinds, "settings reload --json --yes"),
-    ("compare-mcp266", Values, "settings compare --json ram defaults"),
-    ("copy-motor-mcp266", Kinds, "settings copy-motor --json 1 --yes"),
-    ("backups", Kinds, "settings backups --json"),
-    ("unfinished", Kinds, "settings unfinished --json"),
-    ("script-status", Kinds, "script status --json"),
-    ("script-download", Kinds, "script download SCRIPT --json"),
-    ("mcl-check", Values, "mcl check --json SCRIPT"),
-    ("mcl-check-faulty", Values, "mcl check --json FAULTY"),
-    ("mcl-reference", Values, "mcl reference --json"),
-    ("monitor", Kinds, "monitor --json --for 0.5"),
-    ("tune-velocity", Verdict, "tune velocity --json --motor 1 --dry-run"),
+type Kept = (&'static str, Of, &'static str);
+
+/// What is called one after the other in a folder, where a command may find what those before it left behind.
+const COMMANDS: [&[Kept]; 4] = [
+    &[
+        ("status-mcp266", Kinds, "status --json"),
+        ("status-mcp266-4", Kinds, "status --json --connect sim:mcp266,generation=4"),
+        ("status-roboclaw", Kinds, "status --json --connect sim:roboclaw-2x7a"),
+        ("status-mind", Kinds, "status --json --connect sim:motion-mind-3,mode=4"),
+        ("stop-mcp266", Kinds, "stop --json"),
+        ("stop-mind", Kinds, "stop --json --connect sim:motion-mind-3,mode=4"),
+        ("drive-mcp266", Kinds, "drive --json --duty 10 --for 0.3"),
+        ("drive-mind", Kinds, "drive --json --connect sim:motion-mind-3,mode=4 --speed 500 --for 0.3"),
+        ("firmware-info", Values, "firmware info --json"),
+    ],
+    &[
+        ("protocol-mcp", Values, "protocol --json"),
+        ("protocol-mind", Values, "protocol --json --family motion-mind"),
+        ("reference", Values, "settings reference --json"),
+        ("read-mcp266", Values, "settings read --json"),
+        ("read-mcp266-4", Values, "settings read --json --connect sim:mcp266,generation=4"),
+        ("read-roboclaw", Values, "settings read --json --connect sim:roboclaw-2x7a"),
+        ("read-mind", Values, "settings read --json --connect sim:motion-mind-3,mode=4"),
+        ("monitor", Kinds, "monitor --json --for 0.5"),
+    ],
+    &[
+        ("write-mcp266", Kinds, "settings write --json motor1.velocity.qpps=12000 --yes"),
+        ("write-dry-mcp266", Values, "settings write --json motor1.velocity.qpps=12000 --dry-run"),
+        (
+            "write-mind",
+            Kinds,
+            "settings write --json --connect sim:motion-mind-3,mode=4 register.pterm=77 --yes",
+        ),
+        ("diff-mcp266", Values, "settings diff --json PROFILE"),
+        ("save-mcp266", Kinds, "settings save --json --yes"),
+        ("defaults-mcp266", Kinds, "settings defaults --json --yes"),
+        ("reload-mcp266", Kinds, "settings reload --json --yes"),
+        ("compare-mcp266", Values, "settings compare --json ram defaults"),
+        ("copy-motor-mcp266", Kinds, "settings copy-motor --json 1 --yes"),
+        ("backups", Kinds, "settings backups --json"),
+        ("unfinished", Kinds, "settings unfinished --json"),
+    ],
+    &[
+        ("script-status", Kinds, "script status --json"),
+        ("script-download", Kinds, "script download SCRIPT --json"),
+        ("mcl-check", Values, "mcl check --json SCRIPT"),
+        ("mcl-check-faulty", Values, "mcl check --json FAULTY"),
+        ("mcl-reference", Values, "mcl reference --json"),
+        ("tune-velocity", Verdict, "tune velocity --json --motor 1 --dry-run"),
+    ],
 ];
 
 /// A run of the program in a folder of its own: its exit code and the objects that it printed.
@@ -159,13 +174,22 @@ fn assert_same_kinds(kept: &Value, now: &Value, place: &str) {
 
 #[test]
 fn what_is_printed_for_programs_keeps_its_keys_and_its_values() {
+    // They wait for their controllers most of the time.
+    std::thread::scope(|scope| {
+        for commands in COMMANDS {
+            scope.spawn(move || called_in_turn(commands));
+        }
+    });
+}
+
+fn called_in_turn(commands: &[Kept]) {
     let work = TempDir::new().expect("a temporary folder can be made");
     let write = |name: &str, text: &str| std::fs::write(work.path().join(name), text).expect("it is ours");
     write("script.mcl", SCRIPT);
     write("faulty.mcl", FAULTY);
     std::fs::copy(folder().join("files/profile mcp266.json"), work.path().join("profile.json"))
         .expect("it is in the repository");
-    for (name, of, arguments) in COMMANDS {
+    for (name, of, arguments) in commands {
         let path = folder().join("json").join(format!("{name}.json"));
         let printed = run(arguments, work.path());
         if is_recording() {
