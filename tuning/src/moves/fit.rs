@@ -43,6 +43,8 @@ thresholds! {
         knee: f64 = 3.0,
         /// Relative change of misfit and parameters that ends a fit.
         enough: f64 = 1e-5,
+        /// The same while rates and starts are told apart, whose misfits differ by far more.
+        enough_to_tell: f64 = 1e-3,
         /// How far a parameter may lie outside its bounds, as a standard deviation in units of the parameter.
         bound: f64 = 0.1,
         /// How much larger than the least the misfit of a rate may be for it to be as likely, in units of the reduced chi-square (of 1 where that is less).
@@ -114,12 +116,21 @@ pub(super) fn fit_moves<L: Law>(
     for rate_hz in rates_hz {
         let law = law.at_rate(*rate_hz);
         // The next rate is near to this one; but where it was far from the true one, a fit may have ended in a valley of its own.
-        let tries = starts.iter().chain(&nearest).map(|start| minimised(stretches, law, start.0));
+        let told = |start: &Start| minimised(stretches, law, start.0, MOVES_FIT.enough_to_tell);
+        let tries = starts.iter().chain(&nearest).map(told);
         let Some(best) = tries.flatten().min_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
         nearest = Some(Start(best.1.q));
         found.push((best.0, *rate_hz, best.1));
         if gets_hopeless(found.iter().map(|fit| fit.0), readings) {
             break;
+        }
+    }
+    let least = found.iter().map(|one| one.0).fold(f64::INFINITY, f64::min);
+    // Twice as far as is likely, since a fit that goes on ends lower.
+    let may_be_likely = least + 2.0 * MOVES_FIT.likely * (least / readings as f64).max(1.0);
+    for (misfit, _, problem) in found.iter_mut().filter(|one| one.0 <= may_be_likely) {
+        if let Some(better) = minimised(stretches, problem.law, problem.q, MOVES_FIT.enough) {
+            (*misfit, *problem) = better;
         }
     }
     let best = found.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
@@ -152,13 +163,15 @@ fn gets_hopeless(misfits: impl Iterator<Item = f64> + Clone, readings: usize) ->
     before > most && last > before
 }
 
-fn minimised<L: Law>(stretches: &[Stretch<L>], law: L, q: Vector6<f64>) -> Option<(f64, Problem<'_, L>)> {
+fn minimised<L: Law>(
+    stretches: &[Stretch<L>],
+    law: L,
+    q: Vector6<f64>,
+    enough: f64,
+) -> Option<(f64, Problem<'_, L>)> {
     let problem = Problem::new(stretches, law, q);
-    let (problem, report) = LevenbergMarquardt::new()
-        .with_patience(4)
-        .with_ftol(MOVES_FIT.enough)
-        .with_xtol(MOVES_FIT.enough)
-        .minimize(problem);
+    let (problem, report) =
+        LevenbergMarquardt::new().with_patience(4).with_ftol(enough).with_xtol(enough).minimize(problem);
     report.objective_function.is_finite().then_some((2.0 * report.objective_function, problem))
 }
 
