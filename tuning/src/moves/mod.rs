@@ -140,10 +140,12 @@ fn first_strokes<L: Law>(
     let push = (MOVES.first_push * started.push).min(MOVES.most_push.min(guard.options.max_duty));
     let mut length = (push / started.gain).min(ground.most);
     let mut gain = push / length;
+    let mut swings = false;
     for _ in 0..MOVES.first_tries {
         let registers = hold(guard, law, of_duty(gain, 0.0))?;
         let made = strokes(guard, ground, registers, (length, &MOVES.to_and_fro, 1.5))?;
-        if made.swings {
+        swings = made.swings;
+        if swings {
             gain *= 0.4;
             continue;
         }
@@ -161,7 +163,8 @@ fn first_strokes<L: Law>(
             return Ok(found);
         }
     }
-    Err(Cause::TooCoarse)
+    // However little it was to be, it was raised until the motor moved.
+    Err(if swings { Cause::GainSteps } else { Cause::TooCoarse })
 }
 
 /// Strokes under gains that suit the motor, and the same with D.
