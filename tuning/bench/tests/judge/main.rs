@@ -19,16 +19,3 @@ mod small_faults;
 mod small_table;
 mod trajectory;
 mod ways_out;
-
-use brushwork_tuning::law_probe::LawProbe;
-use brushwork_tuning::report::Report;
-
-/// Which of many runs are replayed: it takes as long as they did.
-const REPLAYED: usize = 4;
-
-/// Holds a run of a number against its replay, one of four.
-#[track_caller]
-fn assert_replays<L: LawProbe + PartialEq>(number: usize, report: &Report<L>, case: &str) {
-    let is_left_out = !number.is_multiple_of(REPLAYED);
-    assert!(is_left_out || report.replay().as_ref() == Some(report), "{case}: the replay differs");
-}
