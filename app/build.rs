@@ -4,7 +4,7 @@
 #[path = "../tests/test_threads.rs"]
 mod test_threads;
 
-/// They wait for programs, simulated controllers and time-outs and compute for a fifteenth of their time: with as many as processors these would
+/// They wait for programs, simulated controllers and time-outs and compute for a twelfth of their time: with as many as processors these would
 /// have nothing to do.
 const TESTS_PER_PROCESSOR: usize = 8;
 

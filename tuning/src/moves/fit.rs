@@ -43,8 +43,8 @@ thresholds! {
         knee: f64 = 3.0,
         /// Relative change of misfit and parameters that ends a fit.
         enough: f64 = 1e-5,
-        /// The same while rates and starts are told apart, whose misfits differ by far more.
-        enough_to_tell: f64 = 1e-3,
+        /// The same while rates and starts are told apart, whose misfits differ by far more. With 1e-3 a fit ended in a valley of its own, at a third of the true time constant, and the run was called tuned.
+        enough_to_tell: f64 = 1e-4,
         /// How far a parameter may lie outside its bounds, as a standard deviation in units of the parameter.
         bound: f64 = 0.1,
         /// How much larger than the least the misfit of a rate may be for it to be as likely, in units of the reduced chi-square (of 1 where that is less).
@@ -127,7 +127,7 @@ pub(super) fn fit_moves<L: Law>(
     }
     let least = found.iter().map(|one| one.0).fold(f64::INFINITY, f64::min);
     // Twice as far as is likely, since a fit that goes on ends lower.
-    let may_be_likely = least + 2.0 * MOVES_FIT.likely * (least / readings as f64).max(1.0);
+    let may_be_likely = likely_to(least, readings, 2.0);
     for (misfit, _, problem) in found.iter_mut().filter(|one| one.0 <= may_be_likely) {
         if let Some(better) = minimised(stretches, problem.law, problem.q, MOVES_FIT.enough) {
             (*misfit, *problem) = better;
@@ -135,7 +135,7 @@ pub(super) fn fit_moves<L: Law>(
     }
     let best = found.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
     let chi_square = best.0 / readings as f64;
-    let likely = |misfit: f64| misfit <= best.0 + MOVES_FIT.likely * chi_square.max(1.0);
+    let likely = |misfit: f64| misfit <= likely_to(best.0, readings, 1.0);
     let likely_hz = || found.iter().filter(|other| likely(other.0)).map(|other| other.1);
     let likely_hz = (likely_hz().min().unwrap_or(best.1), likely_hz().max().unwrap_or(best.1));
     let (model, offset_s, lag_s) = parts(&best.2.q, best.1);
@@ -152,10 +152,15 @@ pub(super) fn fit_moves<L: Law>(
     Some(Found { fit, lag_s: (lag_s, deviations[5]), rate_hz: best.1, likely_hz, q: best.2.q })
 }
 
+/// The misfit up to which a rate is as likely as the one of the least, or so many times as far.
+fn likely_to(least: f64, readings: usize, times: f64) -> f64 {
+    least + times * MOVES_FIT.likely * (least / readings as f64).max(1.0)
+}
+
 /// Whether misfits of ever quicker rates go on growing where they are far too large already: three of four ticks of a fit are those of the quickest rates.
 fn gets_hopeless(misfits: impl Iterator<Item = f64> + Clone, readings: usize) -> bool {
     let least = misfits.clone().fold(f64::INFINITY, f64::min);
-    let most = least + MOVES_FIT.hopeless * MOVES_FIT.likely * (least / readings as f64).max(1.0);
+    let most = likely_to(least, readings, MOVES_FIT.hopeless);
     let (mut before, mut last) = (f64::NAN, f64::NAN);
     for misfit in misfits {
         (before, last) = (last, misfit);

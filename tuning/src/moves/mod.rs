@@ -140,12 +140,14 @@ fn first_strokes<L: Law>(
     let push = (MOVES.first_push * started.push).min(MOVES.most_push.min(guard.options.max_duty));
     let mut length = (push / started.gain).min(ground.most);
     let mut gain = push / length;
-    let mut swings = false;
+    let (mut swung, mut is_least) = (None, false);
     for _ in 0..MOVES.first_tries {
         let registers = hold(guard, law, of_duty(gain, 0.0))?;
         let made = strokes(guard, ground, registers, (length, &MOVES.to_and_fro, 1.5))?;
-        swings = made.swings;
-        if swings {
+        // It was to be less, and was raised until the motor stayed where it is.
+        is_least = made.swings && swung == Some(registers);
+        if made.swings {
+            swung = Some(registers);
             gain *= 0.4;
             continue;
         }
@@ -163,8 +165,7 @@ fn first_strokes<L: Law>(
             return Ok(found);
         }
     }
-    // However little it was to be, it was raised until the motor moved.
-    Err(if swings { Cause::GainSteps } else { Cause::TooCoarse })
+    Err(if is_least { Cause::GainSteps } else { Cause::TooCoarse })
 }
 
 /// Strokes under gains that suit the motor, and the same with D.

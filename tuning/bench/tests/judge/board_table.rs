@@ -137,7 +137,7 @@ fn the_slide_that_is_simulated_by_default_is_tuned_at_its_nine_thousand_six_hund
 fn a_fine_encoder_keeps_moves_within_the_following_error_and_too_fine_a_one_is_named() {
     use brushwork_tuning::cause::Cause;
 
-    let ends = [1.0, 4.0, 16.0, 64.0, 400.0, 512.0, 1.0 / 128.0, 1.0 / 512.0].map(|finer| {
+    let ends = [1.0, 4.0, 16.0, 64.0, 256.0, 512.0, 1.0 / 128.0, 1.0 / 512.0].map(|finer| {
         let mut plant = specimen(SEED, 4);
         plant.axis.encoder.counts_per_turn *= finer;
         let (report, _) = tune_plant(&plant, &request_of(&plant, Method::Pd));
