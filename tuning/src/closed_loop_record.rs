@@ -1,7 +1,7 @@
 //! The record of a closed loop, and how far the loop of a model is off it.
 //!
 //! The firmware's ticks fall anywhere between polls. Simulated is what the loop does on average over all phases of its tick: a setpoint comes into force
-//! over the length of one tick, and a register is half a tick old when it is read.
+//! over the length of one tick, and a register that is refreshed once in each is half a tick old when it is read.
 
 use crate::experiment_guard::{ExperimentGuard, Input};
 use crate::law::Law;
@@ -39,8 +39,32 @@ pub struct ClosedLoopRecord {
     pub duties: Vec<(f64, f64)>,
     /// Standard deviation of the times of counts, as far as a busy host or line makes it, s.
     pub stamp_s: f64,
-    /// Whether each count came with its own time, so that it is known to much less than a tick.
-    pub is_dated: bool,
+    /// How old the counts may have been when they were read.
+    pub age: CountAge,
+}
+
+/// How old counts are when they are read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CountAge {
+    /// Up to a tick: a register that is refreshed once in each.
+    #[default]
+    UpToATick,
+    /// Not at all: the counter itself is read.
+    Live,
+    /// Each came with its own time, so that it is known to much less than a tick.
+    Dated,
+}
+
+impl CountAge {
+    /// The age on average, ticks. That of counts which came with their time is in it.
+    fn ticks(self) -> f64 {
+        if self == Self::Live { 0.0 } else { 0.5 }
+    }
+
+    /// Standard deviation of an age of up to a tick, s.
+    pub(crate) fn spread_s(tick_s: f64) -> f64 {
+        tick_s / 12.0_f64.sqrt()
+    }
 }
 
 impl ClosedLoopRecord {
@@ -64,7 +88,7 @@ impl ClosedLoopRecord {
             counts: prompt().map(|(p, _)| (p.t, p.counts)).collect(),
             duties: points().filter_map(|(p, _)| p.duty).collect(),
             stamp_s: (open / 12.0).sqrt().hypot(stamps.open_s),
-            is_dated: stamps.are_dated,
+            age: if stamps.are_dated { CountAge::Dated } else { CountAge::UpToATick },
         }
     }
 }
@@ -220,19 +244,18 @@ impl Followed {
         Some(Self { start, tick_s, positions, duties })
     }
 
-    fn at(&self, values: &[f64], t: f64) -> f64 {
-        // Assumed: the register is refreshed once a tick, so a reading is half a tick old on average.
-        let x = ((t - self.start) / self.tick_s - 0.5).max(0.0);
+    fn at(&self, values: &[f64], t: f64, age: CountAge) -> f64 {
+        let x = ((t - self.start) / self.tick_s - age.ticks()).max(0.0);
         let n = (x as usize).min(values.len() - 2);
         values[n] + (values[n + 1] - values[n]) * (x - n as f64).min(1.0)
     }
 
-    fn position_at(&self, t: f64) -> f64 {
-        self.at(&self.positions, t)
+    fn position_at(&self, t: f64, age: CountAge) -> f64 {
+        self.at(&self.positions, t, age)
     }
 
     fn duty_at(&self, t: f64) -> f64 {
-        self.at(&self.duties, t)
+        self.at(&self.duties, t, CountAge::UpToATick)
     }
 }
 
@@ -244,7 +267,8 @@ pub(crate) fn predicted_record<L: Law>(
     before: f64,
 ) -> Option<ClosedLoopRecord> {
     let followed = Followed::new(record, twin, law, 0.0, Some(before))?;
-    let counts = record.counts.iter().map(|&(t, _)| (t, followed.position_at(t).floor())).collect();
+    let counts =
+        record.counts.iter().map(|&(t, _)| (t, followed.position_at(t, record.age).floor())).collect();
     Some(ClosedLoopRecord { setpoints: record.setpoints.clone(), counts, ..ClosedLoopRecord::default() })
 }
 
@@ -274,7 +298,7 @@ impl ClosedLoopRecord {
 /// constant, which is friction.
 pub(crate) fn misfits<L: Law>(
     stretch: &Stretch,
-    flanks: Flanks,
+    (flanks, age): (Flanks, CountAge),
     twin: TickLoop<L>,
     law: &L,
     offset_s: f64,
@@ -284,23 +308,23 @@ pub(crate) fn misfits<L: Law>(
     let record = &stretch.record;
     let Some(followed) = Followed::new(record, twin, law, offset_s, stretch.before) else { return };
     let from_s = record.judged_from_s();
-    count_misfits(record, &followed, from_s, |t| flanks.hold(stretch, t), all);
+    count_misfits(record, (&followed, age), from_s, |t| flanks.hold(stretch, t), all);
     duty_misfits(record, &followed, |t| t > from_s && flanks.hold(stretch, t), noise, all);
 }
 
 /// Those of the counts of some times, followed from a time on.
 fn count_misfits(
     record: &ClosedLoopRecord,
-    followed: &Followed,
+    (followed, age): (&Followed, CountAge),
     from_s: f64,
     is_judged: impl Fn(f64) -> bool,
     all: &mut Vec<f64>,
 ) {
-    let age_s = if record.is_dated { 0.0 } else { followed.tick_s / 12.0_f64.sqrt() };
+    let age_s = if age == CountAge::UpToATick { CountAge::spread_s(followed.tick_s) } else { 0.0 };
     let stamp_s = RECORD.stamp_s.hypot(record.stamp_s).hypot(age_s);
     let mut drift: Option<(f64, f64, f64, f64)> = None;
     for &(t, count) in record.counts.iter().filter(|count| count.0 >= from_s) {
-        let position = followed.position_at(t);
+        let position = followed.position_at(t, age);
         let error = count - position;
         drift = Some(match drift {
             None => (t, position, error, 1.0 / 12.0),

@@ -64,6 +64,11 @@ thresholds! {
         finely: f64 = 1e-8,
         /// Standard deviations from which on a residual counts less and less.
         knee: f64 = 3.0,
+        /// Reduced chi-square below which counts are sharper than a register can be that is refreshed at 300 Hz: it is refreshed more often, or they are read live. Of 96 motors of seed 7 with such a
+        /// register none is below 0.52; of 127 runs of a foreign controller with live counts (seeds 891 and 892) 119 are below 0.38, the others are steering gears with backlash.
+        sharp: f64 = 0.42,
+        /// Least standard deviation of the stamps of such counts, in seconds: half of what a poll over a pseudo-terminal is open.
+        least_stamp_s: f64 = 0.0002,
     }
 }
 
@@ -115,9 +120,32 @@ fn as_asked() -> f64 {
 }
 
 /// Fits an open-loop record. `gain` and `tau_s` are start values; `limit` is what current limit and stall current say of the drive limit,
-/// `brake_share` the limit for braking over that.
+/// `brake_share` the limit for braking over that. Counts that turn out to be sharper than those of a register that is refreshed once a tick are no older than their stamps.
 #[must_use]
 pub fn fit(
+    record: &OpenLoopRecord,
+    gain: f64,
+    tau_s: f64,
+    limit: Option<f64>,
+    brake_share: f64,
+) -> Option<Fit> {
+    let found = fit_as_dated(record, gain, tau_s, limit, brake_share)?;
+    let actuation = record.actuation;
+    if actuation.age_s == 0.0 || found.chi_square > FIT.sharp {
+        return Some(found);
+    }
+    let live = Actuation {
+        offset_s: actuation.offset_s - actuation.age_s,
+        age_s: 0.0,
+        stamp_s: (actuation.stamp_s * found.chi_square.sqrt()).max(FIT.least_stamp_s),
+        ..actuation
+    };
+    let record = OpenLoopRecord { actuation: live, ..record.clone() };
+    fit_as_dated(&record, found.model.gain_counts_per_s, found.model.tau_s, limit, brake_share)
+}
+
+/// The same with counts as old as the record has it.
+fn fit_as_dated(
     record: &OpenLoopRecord,
     gain: f64,
     tau_s: f64,
@@ -335,12 +363,17 @@ mod tests {
 
     /// A record of steps over four seconds, its counts made by a known model and rounded.
     fn known_record(model: &PlantModel, offset_s: f64) -> OpenLoopRecord {
+        record_of_old_counts(model, offset_s, |_| 0.0)
+    }
+
+    /// The same of counts of some age, s, in each poll.
+    fn record_of_old_counts(model: &PlantModel, offset_s: f64, age_s: fn(usize) -> f64) -> OpenLoopRecord {
         let steps = [(0.05, 1.0), (0.9, 0.3), (1.3, 0.65), (1.6, 0.3), (1.9, 0.65), (2.2, -1.0), (3.2, 0.0)];
         let drives: Vec<Drive> =
             steps.iter().map(|&(t, duty)| Drive { t, input: Input::Duty(duty) }).collect();
         let mut points: Vec<Point> = (0..320)
             .map(|n| Point {
-                t: f64::from(n) * 0.0125,
+                t: f64::from(n) * 0.0125 - age_s(n as usize),
                 counts: 0.0,
                 duty: None,
                 amps: None,
@@ -351,8 +384,9 @@ mod tests {
         let empty = OpenLoopRecord::new(&points, &drives, 0.0, 4.0, None);
         let (mut counts, mut volts) = (Vec::new(), Vec::new());
         empty.predict(model, offset_s, &mut counts, &mut volts);
-        for (point, count) in points.iter_mut().zip(&counts) {
+        for (n, (point, count)) in points.iter_mut().zip(&counts).enumerate() {
             point.counts = count.floor();
+            point.t += age_s(n);
         }
         OpenLoopRecord::new(&points, &drives, 0.0, 4.0, None)
     }
@@ -377,6 +411,31 @@ mod tests {
             assert!((model.coulomb_duty - 0.06).abs() < 0.01, "{found:?}");
             assert!(found.chi_square < 1.0, "{found:?}");
         }
+    }
+
+    /// A coreless motor, whose counts are those of the moment or up to a tick of 300 Hz old: taken to be old, live ones made its time constant a quarter too short.
+    #[test]
+    fn live_counts_tell_a_short_time_constant_and_counts_of_the_last_tick_less_of_it() {
+        let truth = PlantModel {
+            gain_counts_per_s: 180_000.0,
+            tau_s: 0.007,
+            coulomb_duty: 0.05,
+            load_duty: 0.0,
+            drive_limit: None,
+            brake_limit: None,
+            sag: 0.03,
+        };
+        // A command waits for half a tick on average. The fractional parts of multiples of the golden ratio fill a tick evenly.
+        let waits_s = 0.5 / 300.0;
+        let fitted = |age_s| {
+            let record = record_of_old_counts(&truth, waits_s, age_s);
+            fit(&record, 150_000.0, 0.02, None, 1.0).expect("enough polls")
+        };
+        let live = fitted(|_| 0.0);
+        assert!((live.model.tau_s / 0.007 - 1.0).abs() < 0.05, "{live:?}");
+        let old = fitted(|n| (0.618 * n as f64).fract() / 300.0);
+        assert!(old.chi_square > FIT.sharp, "{old:?}");
+        assert!(live.sd_ln_tau < 0.9 * old.sd_ln_tau, "{} and {}", live.sd_ln_tau, old.sd_ln_tau);
     }
 
     /// A current limit of 40 % for driving and none for braking: taken as one limit for both, the time constant came out 9 % short.

@@ -43,6 +43,8 @@ pub struct Actuation {
     pub slew_per_s: f64,
     /// From the stamp of a command to its effect, with the age of a reading, s: the usual.
     pub offset_s: f64,
+    /// How much of that is the age of counts that are up to a tick old, s; 0 where they come with their time.
+    pub age_s: f64,
     /// The limit of the duty by which the current is held, where it is not the current itself that is limited.
     pub duty_limit: Option<DutyLimit>,
     /// Standard deviation of the time stamps of readings, s.
@@ -55,6 +57,7 @@ impl Default for Actuation {
         Self {
             slew_per_s: OPEN_LOOP.duty_slew_per_s,
             offset_s: 0.0035,
+            age_s: 0.5 / 300.0,
             duty_limit: None,
             stamp_s: OPEN_LOOP.stamp_s,
         }

@@ -3,7 +3,7 @@
 //! A difference of two polls is a poor speed: a count is rounded, and the register it comes from is up to a tick old. Flanks are
 //! therefore laid over each other by their commands, and a plateau is searched for sines, whose counts grow as they get slower.
 
-use crate::closed_loop_record::ClosedLoopRecord;
+use crate::closed_loop_record::{ClosedLoopRecord, CountAge};
 use crate::thresholds::thresholds;
 use nalgebra::{Matrix4, Vector4};
 use std::f64::consts::TAU;
@@ -52,8 +52,11 @@ pub(crate) fn speed_ripple(
     record: &ClosedLoopRecord,
     answer: Option<&Answer<'_>>,
 ) -> f64 {
-    let highest_hz =
-        if record.is_dated { OSCILLATION.dated_oscillations_hz } else { OSCILLATION.oscillations_hz.1 };
+    let highest_hz = if record.age == CountAge::Dated {
+        OSCILLATION.dated_oscillations_hz
+    } else {
+        OSCILLATION.oscillations_hz.1
+    };
     let (Some(first), Some(last)) = (plateau.first(), plateau.last()) else { return 0.0 };
     let seconds = last.0 - first.0;
     if plateau.len() < 20 || seconds <= 0.0 {
@@ -174,7 +177,7 @@ mod tests {
     fn a_quick_oscillation_is_looked_for_where_each_count_came_with_its_time() {
         let w = TAU * 24.0;
         let counts = plateau(|t| 1_500.0 * t - 300.0 / w * (w * t).cos());
-        let dated = ClosedLoopRecord { is_dated: true, ..ClosedLoopRecord::default() };
+        let dated = ClosedLoopRecord { age: CountAge::Dated, ..ClosedLoopRecord::default() };
         let oscillating = speed_ripple(&counts, &dated, None);
         assert!((oscillating / (300.0 / 2.0_f64.sqrt()) - 1.0).abs() < 0.2, "{oscillating}");
         assert!(speed_ripple(&plateau(|t| 1_500.0 * t), &dated, None) < 40.0);

@@ -402,12 +402,7 @@ fn identify_free<L: Law>(
     if (run.full_speeds.0 - run.full_speeds.1).abs() > 0.05 * full {
         report.causes.push(Cause::Asymmetric);
     }
-    let now_s = guard.now_s();
-    let record = open_loop_record_of(guard, run.from_s, now_s, probe.volts);
-    let limit = guard.drive_limit(probe.stall_amps);
-    let found =
-        fit(&record, full / run.full_duty, run.tau_s, limit, brake_share(guard)).ok_or(Cause::TooCoarse)?;
-    believe(&found, guard.options.poll_s, &record)?;
+    let found = fitted(guard, probe, run.from_s, (full / run.full_duty, run.tau_s))?;
     // With less than full duty the model says what full duty would give.
     let qpps = if run.full_duty > 0.999 {
         full
@@ -422,13 +417,9 @@ fn identify_part<L: Law>(
     guard: &mut ExperimentGuard<'_, L>,
     probe: &Probe,
     from_s: f64,
-    (gain, tau_s): (f64, f64),
+    start: (f64, f64),
 ) -> Result<Found, Cause> {
-    let now_s = guard.now_s();
-    let record = open_loop_record_of(guard, from_s, now_s, probe.volts);
-    let limit = guard.drive_limit(probe.stall_amps);
-    let found = fit(&record, gain, tau_s, limit, brake_share(guard)).ok_or(Cause::TooCoarse)?;
-    believe(&found, guard.options.poll_s, &record)?;
+    let found = fitted(guard, probe, from_s, start)?;
     let qpps = found.model.gain_counts_per_s * (1.0 - found.model.coulomb_duty);
     Ok(Found { fit: found, qpps })
 }
@@ -475,23 +466,25 @@ fn identify_to_and_fro<L: Law>(
     from_s: f64,
     start: f64,
 ) -> Result<Found, Cause> {
-    let now_s = guard.now_s();
-    let record = open_loop_record_of(guard, from_s, now_s, probe.volts);
-    let limit = guard.drive_limit(probe.stall_amps);
-    let found = fit(&record, start, 0.06, limit, brake_share(guard)).ok_or(Cause::TooCoarse)?;
-    believe(&found, guard.options.poll_s, &record)?;
+    let found = fitted(guard, probe, from_s, (start, 0.06))?;
     let qpps = found.model.gain_counts_per_s * (1.0 - found.model.coulomb_duty);
     Ok(Found { fit: found, qpps })
 }
 
-fn open_loop_record_of<L: Law>(
-    guard: &ExperimentGuard<'_, L>,
+/// The fit, from start values of gain and time constant, of all that was polled since a time.
+fn fitted<L: Law>(
+    guard: &mut ExperimentGuard<'_, L>,
+    probe: &Probe,
     from_s: f64,
-    to_s: f64,
-    volts: Option<f64>,
-) -> OpenLoopRecord {
-    let record = OpenLoopRecord::new(&guard.points, &guard.drives, from_s, to_s, volts);
-    OpenLoopRecord { actuation: guard.actuation(), ..record }
+    (gain, tau_s): (f64, f64),
+) -> Result<Fit, Cause> {
+    let now_s = guard.now_s();
+    let record = OpenLoopRecord::new(&guard.points, &guard.drives, from_s, now_s, probe.volts);
+    let record = OpenLoopRecord { actuation: guard.actuation(), ..record };
+    let limit = guard.drive_limit(probe.stall_amps);
+    let found = fit(&record, gain, tau_s, limit, brake_share(guard)).ok_or(Cause::TooCoarse)?;
+    believe(&found, guard.options.poll_s, &record)?;
+    Ok(found)
 }
 
 /// The current limit for braking over that for driving.

@@ -2,7 +2,7 @@
 
 use crate::backlash::with_backlash;
 use crate::cause::Cause;
-use crate::closed_loop_record::{ClosedLoopRecord, Stretch, predicted_record};
+use crate::closed_loop_record::{ClosedLoopRecord, CountAge, Stretch, predicted_record};
 use crate::design::{Design, Goal, Task, deadzone};
 use crate::experiment::rest;
 use crate::experiment_guard::{ExperimentGuard, Point};
@@ -478,7 +478,8 @@ pub(crate) fn try_velocity<L: Law>(
     let duty_per_speed =
         |w: f64| velocity.p.hypot(velocity.i / w) / task.qpps / 1.0_f64.hypot(w * task.lag.filter_s);
     // Readings that come with their time make nothing up.
-    let answer = (!record.is_dated).then_some(Answer { duties: &duties, duty_per_speed: &duty_per_speed });
+    let answer = (record.age != CountAge::Dated)
+        .then_some(Answer { duties: &duties, duty_per_speed: &duty_per_speed });
     let seen = |record: &ClosedLoopRecord| flank_overshoot(record, high - low, guard.options.poll_s);
     let mut twin = TickLoop::new(task.plant, task.law, task.lag, *gains, task.qpps);
     twin.start_steady(low);

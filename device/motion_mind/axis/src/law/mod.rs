@@ -208,6 +208,7 @@ impl Law for MotionMindLaw {
         Actuation {
             slew_per_s: f64::INFINITY,
             offset_s: OFFSET_S,
+            age_s: 0.0,
             duty_limit: Some(duty_limit(amps_limit(max_current_raw))),
             stamp_s: if is_undated { UNDATED_STAMP_S } else { OPEN_LOOP.stamp_s },
         }
