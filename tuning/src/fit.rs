@@ -130,7 +130,7 @@ pub fn fit(
     limit: Option<f64>,
     brake_share: f64,
 ) -> Option<Fit> {
-    let found = fit_as_dated(record, gain, tau_s, limit, brake_share)?;
+    let found = fit_of_age(record, gain, tau_s, limit, brake_share)?;
     let actuation = record.actuation;
     let is_sharp = actuation.age_s > 0.0
         && found.chi_square < FIT.sharp
@@ -145,11 +145,11 @@ pub fn fit(
         ..actuation
     };
     let record = OpenLoopRecord { actuation: live, ..record.clone() };
-    fit_as_dated(&record, found.model.gain_counts_per_s, found.model.tau_s, limit, brake_share)
+    fit_of_age(&record, found.model.gain_counts_per_s, found.model.tau_s, limit, brake_share)
 }
 
 /// The same with counts as old as the record has it.
-fn fit_as_dated(
+fn fit_of_age(
     record: &OpenLoopRecord,
     gain: f64,
     tau_s: f64,
